@@ -1,0 +1,38 @@
+# Sourced by demo.sh and test.sh, from the project's root.
+
+# Debian 12 packages; each is said where it is used in the CMake files.
+packages=(
+  g++ cmake ninja-build pkg-config binutils
+  libsystemc-dev libglm-dev libopenexr-dev libpng-dev libssl-dev
+  libsleef-dev librandom123-dev libtinyobjloader-dev
+  libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
+  libgtest-dev
+)
+
+install_missing_packages() {
+  local missing=()
+  local package
+  for package in "${packages[@]}"; do
+    dpkg-query -W -f='${Status}' "$package" 2> /dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ "${#missing[@]}" -eq 0 ] && return
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo > /dev/null || {
+      echo "missing packages: ${missing[*]}; install them as root, or install sudo" >&2
+      exit 1
+    }
+    as_root=(sudo)
+  fi
+  echo "Installing with apt: ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
+    > /dev/null
+}
+
+# prepare_build PRESET: packages, configuration, build. Quick when nothing changed.
+prepare_build() {
+  install_missing_packages
+  [ -f "build/$1/build.ninja" ] || cmake --preset "$1" > /dev/null
+  cmake --build --preset "$1"
+}

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace cn {
+
+/// Classes of poly instructions that differ in cost. `sram` counts 4-byte words, the width of the path between a PE's
+/// SRAM and its registers (shared reference: 96 GB/s = 4 B a PE and cycle); every other class counts instructions.
+enum class InstructionClass : std::uint8_t {
+  fp64_add,
+  fp64_mul,
+  fp64_div,
+  fp64_sqrt,
+  fp64_sincos,
+  fp64_exp,
+  fp64_log,
+  fp32_add,
+  fp32_mul,
+  fp32_div,
+  fp32_sqrt,
+  int16_alu,
+  int32_alu,
+  int64_alu,
+  int16_mul,
+  int32_mul,
+  int64_mul,
+  move,     // register to register, also the masked assignment
+  convert,  // between number formats
+  enable,   // push, invert or pop of the enable stack
+  sram,
+  swazzle,  // one step along the PE-to-PE path
+  reduce,   // one test of all PEs by the control unit (any, all, count)
+  mono,     // an instruction of the control unit's own; overlaps poly work through the issue queue
+};
+
+inline constexpr std::size_t kInstructionClasses = static_cast<std::size_t>(InstructionClass::mono) + 1;
+
+inline constexpr std::array<std::string_view, kInstructionClasses> kInstructionClassNames = {
+    "fp64_add",  "fp64_mul",  "fp64_div",  "fp64_sqrt", "fp64_sincos", "fp64_exp", "fp64_log", "fp32_add",
+    "fp32_mul",  "fp32_div",  "fp32_sqrt", "int16_alu", "int32_alu",   "int64_alu", "int16_mul", "int32_mul",
+    "int64_mul", "move",      "convert",   "enable",    "sram",        "swazzle",   "reduce",   "mono"};
+
+/// How many instructions of each class were issued.
+struct IssueCounts {
+  std::array<std::uint64_t, kInstructionClasses> by_class{};
+
+  std::uint64_t& operator[](InstructionClass c) { return by_class[static_cast<std::size_t>(c)]; }
+  std::uint64_t operator[](InstructionClass c) const { return by_class[static_cast<std::size_t>(c)]; }
+
+  IssueCounts& operator+=(const IssueCounts& other) {
+    for (std::size_t i = 0; i < kInstructionClasses; ++i) by_class[i] += other.by_class[i];
+    return *this;
+  }
+  bool operator==(const IssueCounts& other) const { return by_class == other.by_class; }
+};
+
+/// What a kernel issued, shared by all PEs. Cost is data-independent except where a region runs "while any PE wants it":
+/// a kernel is executed strip by strip (strip.hpp), so each data-dependent region and each of its iterations is a node
+/// that the first strip to reach it fills in; later strips issue the same instructions there and add only their enabled
+/// lanes. The sum over all nodes is what a chip that runs all PEs in lock step issues.
+class IssueTree {
+ public:
+  struct Node;
+  using Region = std::vector<Node>;  // one node an iteration
+
+  struct Node {
+    IssueCounts counts;
+    bool reached = false;
+    std::uint64_t enabled_lanes = 0;
+    std::vector<Region> regions;  // in the order in which the node's code enters them
+  };
+
+  Node& root() { return root_; }
+  const Node& root() const { return root_; }
+
+  /// Ready for the next kernel; keeps the memory of regions.
+  void clear() { root_ = Node{}; }
+
+  template <class Visitor>  // (const Node&) -> void
+  void for_each_node(Visitor&& visit) const {
+    visit_node(root_, visit);
+  }
+
+  IssueCounts total() const {
+    IssueCounts sum;
+    for_each_node([&](const Node& node) { sum += node.counts; });
+    return sum;
+  }
+
+ private:
+  template <class Visitor>
+  static void visit_node(const Node& node, Visitor& visit) {
+    if (!node.reached) return;
+    visit(node);
+    for (const Region& region : node.regions)
+      for (const Node& iteration : region) visit_node(iteration, visit);
+  }
+
+  Node root_;
+};
+
+}  // namespace cn

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <immintrin.h>
+
+namespace cn {
+
+/// PEs that the host executes together. Eight doubles are one register of AVX-512, two of AVX2 and four of SSE2; wider
+/// strips spill, and operating on all PEs at once is three to twenty times slower (measured, README "Design").
+inline constexpr int kStripLanes = 8;
+
+/// Native vector width of the level this file is compiled for.
+#if defined(__AVX512F__)
+inline constexpr std::size_t kNativeBytes = 64;
+#elif defined(__AVX2__)
+inline constexpr std::size_t kNativeBytes = 32;
+#else
+inline constexpr std::size_t kNativeBytes = 16;
+#endif
+
+/// One value a PE for the PEs of a strip, in as many native vectors as that takes. GCC splits vectors wider than the
+/// machine's into scalars at comparisons and selects, hence the chunks.
+template <class T>
+struct Lanes {
+  static constexpr std::size_t kBytes = kStripLanes * sizeof(T);
+  static constexpr std::size_t kChunkBytes = kBytes < kNativeBytes ? kBytes : kNativeBytes;
+  static constexpr int kChunks = static_cast<int>(kBytes / kChunkBytes);
+  using Chunk __attribute__((vector_size(kChunkBytes))) = T;
+
+  Chunk chunk[kChunks];
+
+  T operator[](int lane) const {
+    T value;
+    std::memcpy(&value, reinterpret_cast<const char*>(this) + lane * sizeof(T), sizeof(T));
+    return value;
+  }
+  void set(int lane, T value) {
+    std::memcpy(reinterpret_cast<char*>(this) + lane * sizeof(T), &value, sizeof(T));
+  }
+};
+
+/// Enable bits of a strip: all ones or zero in each lane.
+using MaskLanes = Lanes<std::int64_t>;
+
+template <class T>
+inline Lanes<T> broadcast(T value) {
+  Lanes<T> result;
+  // Subtracting zero changes no number; adding it would turn -0.0 into 0.0.
+  for (int i = 0; i < Lanes<T>::kChunks; ++i) result.chunk[i] = value - typename Lanes<T>::Chunk{};
+  return result;
+}
+
+template <class T>
+inline Lanes<T> load_lanes(const void* address) {
+  Lanes<T> result;
+  std::memcpy(&result, address, sizeof(result));
+  return result;
+}
+
+template <class T>
+inline void store_lanes(void* address, const Lanes<T>& value) {
+  std::memcpy(address, &value, sizeof(value));
+}
+
+/// Applies `f` chunk by chunk; the fixed trip count is unrolled away.
+template <class R, class F>
+inline Lanes<R> each_chunk(F&& f) {
+  Lanes<R> result;
+#pragma GCC unroll 8
+  for (int i = 0; i < Lanes<R>::kChunks; ++i) result.chunk[i] = f(i);
+  return result;
+}
+
+/// Applies `f` lane by lane, for what has no vector form.
+template <class R, class F>
+inline Lanes<R> each_lane(F&& f) {
+  Lanes<R> result;
+#pragma GCC unroll 8
+  for (int i = 0; i < kStripLanes; ++i) result.set(i, f(i));
+  return result;
+}
+
+/// The same bits under another 8-byte type.
+template <class To, class From>
+inline Lanes<To> bit_cast_lanes(const Lanes<From>& from) {
+  static_assert(sizeof(To) == sizeof(From));
+  Lanes<To> to;
+  std::memcpy(&to, &from, sizeof(to));
+  return to;
+}
+
+template <class T>
+inline Lanes<T> select_lanes(const MaskLanes& mask, const Lanes<T>& if_set, const Lanes<T>& otherwise) {
+  if constexpr (sizeof(T) == sizeof(std::int64_t)) {
+    return each_chunk<T>([&](int i) { return mask.chunk[i] ? if_set.chunk[i] : otherwise.chunk[i]; });
+  } else {
+    return each_lane<T>([&](int i) { return mask[i] ? if_set[i] : otherwise[i]; });
+  }
+}
+
+/// Products of the low 32 bits of each lane. Spelled out because GCC makes a full 64-bit product of it otherwise.
+inline Lanes<std::uint64_t> multiply_low_words(const Lanes<std::uint64_t>& a, const Lanes<std::uint64_t>& b) {
+  return each_chunk<std::uint64_t>([&](int i) {
+    using Chunk = Lanes<std::uint64_t>::Chunk;
+#if defined(__AVX512F__)
+    return Chunk(_mm512_maskz_mul_epu32(0xff, __m512i(a.chunk[i]), __m512i(b.chunk[i])));
+#elif defined(__AVX2__)
+    return Chunk(_mm256_mul_epu32(__m256i(a.chunk[i]), __m256i(b.chunk[i])));
+#else
+    return Chunk(_mm_mul_epu32(__m128i(a.chunk[i]), __m128i(b.chunk[i])));
+#endif
+  });
+}
+
+/// Bit i is lane i's.
+inline std::uint32_t mask_bits(const MaskLanes& mask) {
+  std::uint32_t bits = 0;
+#pragma GCC unroll 8
+  for (int i = 0; i < kStripLanes; ++i) bits |= static_cast<std::uint32_t>(mask[i] & 1) << i;
+  return bits;
+}
+
+inline MaskLanes mask_from_bits(std::uint32_t bits) {
+  const MaskLanes lane_bit = each_lane<std::int64_t>([](int i) { return std::int64_t{1} << i; });
+  const std::int64_t broadcast_bits = bits;
+  return each_chunk<std::int64_t>(
+      [&](int i) { return (lane_bit.chunk[i] & (MaskLanes::Chunk{} + broadcast_bits)) != 0; });
+}
+
+}  // namespace cn

@@ -1,0 +1,104 @@
+#include "firmware/cn/machine.hpp"
+
+#include <cstring>
+
+namespace cn {
+namespace {
+
+void check_alignment(const Transfer& transfer, int num_pes) {
+  const auto fault = [&](const std::string& what, std::uint64_t found) {
+    throw MachineFault("transfer of poly offset " + std::to_string(transfer.poly.offset_bytes) + ": " + what + " is " +
+                       std::to_string(found) + ", must be a multiple of 8");
+  };
+  if (transfer.poly.size_bytes % 8 != 0) fault("size", std::uint64_t(transfer.poly.size_bytes));
+  if (transfer.poly.offset_bytes % 8 != 0) fault("poly offset", std::uint64_t(transfer.poly.offset_bytes));
+  if (transfer.mono.by_pe == nullptr) {
+    if (transfer.mono.first % 8 != 0) fault("mono address", transfer.mono.first);
+    if (transfer.mono.stride_bytes % 8 != 0) fault("stride", transfer.mono.stride_bytes);
+    return;
+  }
+  for (int pe = 0; pe < num_pes; ++pe)
+    if (transfer.enabled[pe] && transfer.mono[pe] % 8 != 0)
+      fault("mono address of PE " + std::to_string(pe), transfer.mono[pe]);
+}
+
+}  // namespace
+
+Machine::Machine(int num_pes, int poly_bytes_per_pe) : poly_memory_(num_pes, poly_bytes_per_pe) {}
+
+void Machine::async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source, const LaneMask& enabled) {
+  const Transfer transfer{Direction::mono_to_poly, destination, source, enabled, done};
+  check_alignment(transfer, num_pes());
+  start_transfer(transfer);
+}
+
+void Machine::async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source, const LaneMask& enabled) {
+  const Transfer transfer{Direction::poly_to_mono, source, destination, enabled, done};
+  check_alignment(transfer, num_pes());
+  start_transfer(transfer);
+}
+
+Semaphore Machine::allocate_semaphore(const std::string& name) {
+  if (semaphore_names_.size() == std::size_t(kSemaphores))
+    throw MachineFault("no semaphore left for '" + name + "': the chip has " + std::to_string(kSemaphores));
+  semaphore_names_.push_back(name);
+  return {static_cast<int>(semaphore_names_.size()) - 1};
+}
+
+int Machine::count(const LaneMask& lanes) {
+  issued_.clear();
+  issued_.root().counts[InstructionClass::reduce] = 1;
+  issued_.root().reached = true;
+  issued_.root().enabled_lanes = std::uint64_t(num_pes());
+  retire("count", issued_);
+  return lanes.count();
+}
+
+int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
+  // A running count by doubling distance: in round r each PE adds the count of the PE 2^r to its left, which takes 2^r
+  // steps along the path. The result is known without walking it; tests compare with the walk.
+  std::uint64_t steps = 0;
+  std::uint64_t rounds = 0;
+  for (int distance = 1; distance < num_pes(); distance *= 2, ++rounds) steps += std::uint64_t(distance);
+  issued_.clear();
+  IssueTree::Node& node = issued_.root();
+  node.counts[InstructionClass::swazzle] = steps;
+  node.counts[InstructionClass::int16_alu] = rounds + 1;
+  node.counts[InstructionClass::enable] = 2 * rounds;
+  node.counts[InstructionClass::sram] = 1;
+  node.counts[InstructionClass::reduce] = 1;
+  node.reached = true;
+  node.enabled_lanes = std::uint64_t(num_pes());
+
+  std::uint64_t* const row = poly_memory_.row(number.offset_bytes / 8 * 8);
+  int next = 0;
+  for (int pe = 0; pe < num_pes(); ++pe) {
+    if (!chosen[pe]) continue;
+    const std::int32_t value = next++;
+    std::memcpy(reinterpret_cast<char*>(&row[pe]) + number.offset_bytes % 8, &value, sizeof(value));
+  }
+  retire("number_ascending", issued_);
+  return next;
+}
+
+void Machine::swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour) {
+  std::uint64_t* const row = poly_memory_.row(value.offset_bytes);
+  const std::size_t moved_bytes = std::size_t(num_pes() - 1) * sizeof(std::uint64_t);
+  if (from_neighbour < 0) {
+    std::memmove(row + 1, row, moved_bytes);
+  } else {
+    std::memmove(row, row + 1, moved_bytes);
+  }
+  issued_.clear();
+  IssueTree::Node& node = issued_.root();
+  node.counts[InstructionClass::swazzle] = 1;
+  node.counts[InstructionClass::sram] = 4;  // 8 bytes read and written
+  node.reached = true;
+  node.enabled_lanes = std::uint64_t(num_pes());
+  retire(from_neighbour < 0 ? "swazzle_up" : "swazzle_down", issued_);
+}
+
+void Machine::swazzle_up(PolyField<std::uint64_t> value) { swazzle_rows(value, -1); }
+void Machine::swazzle_down(PolyField<std::uint64_t> value) { swazzle_rows(value, +1); }
+
+}  // namespace cn

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "firmware/cn/kernel.hpp"
+#include "firmware/cn/transfer.hpp"
+
+namespace cn {
+
+/// A firmware fault: unaligned transfer, address outside mono memory, no semaphore left, a wait that nothing can end.
+class MachineFault : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The chip as firmware sees it: one control unit with its mono memory, a PE array with its poly memory, and the
+/// programmed I/O between them. What it costs, and when a transfer is over, is the implementation's business.
+class Machine {
+ public:
+  static constexpr int kSemaphores = 64;
+
+  /// @param num_pes a multiple of kStripLanes, at most kMaxPes
+  Machine(int num_pes, int poly_bytes_per_pe);
+  virtual ~Machine() = default;
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+
+  int num_pes() const { return poly_memory_.num_pes(); }
+  PolyMemory& poly_memory() { return poly_memory_; }
+  const PolyMemory& poly_memory() const { return poly_memory_; }
+
+  /// Runs a kernel on the enabled PEs and charges what it issued.
+  template <class Arguments>
+  void run(const Kernel<Arguments>& kernel, const Arguments& arguments, const LaneMask& enabled) {
+    kernel.run(arguments, poly_memory_, enabled, issued_);
+    retire(kernel.name, issued_);
+  }
+
+  /// Asynchronous copies between mono and poly memory; the PE array goes on computing. Only enabled PEs take part; a
+  /// transfer without any still signals `done`. Each PE's address and the size are multiples of 8 bytes.
+  void async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source, const LaneMask& enabled);
+  void async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source, const LaneMask& enabled);
+
+  /// The addresses that PEs hold in a poly variable, plus a mono offset, for a gather or scatter.
+  MonoPlaces places_in(PolyField<MonoAddress> addresses, std::uint64_t offset_bytes = 0) {
+    return MonoPlaces::each(poly_memory_.row(addresses.offset_bytes), offset_bytes);
+  }
+
+  /// A semaphore of its own for each caller; `name` appears in waves and fault messages.
+  Semaphore allocate_semaphore(const std::string& name);
+  const std::string& semaphore_name(Semaphore semaphore) const { return semaphore_names_.at(std::size_t(semaphore.index)); }
+
+  virtual void sem_signal(Semaphore semaphore) = 0;
+  virtual void sem_wait(Semaphore semaphore) = 0;
+
+  /// How many PEs hold true. A reduction that the control unit reads, with its cost.
+  int count(const LaneMask& lanes);
+
+  /// Ascending numbers 0, 1, 2, ... to the PEs of `chosen`, from left to right, over the PE-to-PE path (paper, section 4);
+  /// returns how many there are. Used as addresses, they compact what the chosen PEs save.
+  int number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number);
+
+  /// `value` of the left neighbour (up) or the right one (down); the PE at the end of the path keeps what it has.
+  void swazzle_up(PolyField<std::uint64_t> value);
+  void swazzle_down(PolyField<std::uint64_t> value);
+
+  /// Instructions of the control unit outside kernels: loop control, address arithmetic, request set-up.
+  virtual void issue_mono(std::uint64_t instructions) = 0;
+
+  /// Mono memory as the control unit reads it, through its data cache; valid until the run ends.
+  template <class T>
+  const T* read_mono(MonoPointer<T> from, std::size_t count = 1) {
+    return static_cast<const T*>(read_mono_bytes(from.address, count * sizeof(T)));
+  }
+  template <class T>
+  void write_mono(MonoPointer<T> to, const T& value) {
+    write_mono_bytes(to.address, &value, sizeof(T));
+  }
+
+  /// From here on nothing costs time, until timed(true): for work that a timed program leaves to others.
+  virtual void timed(bool on) = 0;
+
+ protected:
+  virtual void retire(const char* kernel, const IssueTree& issued) = 0;
+  virtual void start_transfer(const Transfer& transfer) = 0;
+  virtual const void* read_mono_bytes(MonoAddress from, std::size_t bytes) = 0;
+  virtual void write_mono_bytes(MonoAddress to, const void* bytes, std::size_t size) = 0;
+
+ private:
+  void swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour);
+
+  PolyMemory poly_memory_;
+  IssueTree issued_;
+  std::vector<std::string> semaphore_names_;
+};
+
+/// Work within the scope is done, but takes no time and is not counted.
+class Untimed {
+ public:
+  explicit Untimed(Machine& machine) : machine_(machine) { machine_.timed(false); }
+  ~Untimed() { machine_.timed(true); }
+  Untimed(const Untimed&) = delete;
+  Untimed& operator=(const Untimed&) = delete;
+
+ private:
+  Machine& machine_;
+};
+
+}  // namespace cn

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/cn/instruction.hpp"
+#include "firmware/cn/lanes.hpp"
+
+namespace cn {
+
+/// The strip of PEs that is executing. Cn has no syntax for the machine a statement runs on: enable bits, PE number and
+/// the instruction stream are ambient there, and so they are here. Set only by run_strips (kernel.hpp).
+struct Strip {
+  MaskLanes enabled{};                ///< PEs that take part in assignments
+  IssueCounts issued;                 ///< instructions since the last flush into `node`
+  IssueTree::Node* node = nullptr;    ///< where in the kernel's control flow the strip is
+  std::size_t next_region = 0;        ///< ordinal of the next data-dependent region in `node`
+  std::uint64_t* poly_words = nullptr;  ///< word w of PE p is at [w * num_pes + p]
+  int num_pes = 0;
+  int first_pe = 0;
+};
+
+inline thread_local Strip strip;
+
+inline void issue(InstructionClass instruction, std::uint64_t times = 1) { strip.issued[instruction] += times; }
+
+/// Books what was issued since the last flush; only the first strip to pass a node counts its instructions.
+inline void flush_issued() {
+  if (!strip.node->reached) strip.node->counts += strip.issued;
+  strip.issued = IssueCounts{};
+}
+
+/// Runs `body` as the given iteration of a data-dependent region of the current node.
+template <class Body>
+inline void run_node(std::size_t region, std::size_t iteration, Body&& body) {
+  IssueTree::Node* const parent = strip.node;
+  const std::size_t parent_next_region = strip.next_region;
+  flush_issued();
+  if (parent->regions.size() <= region) parent->regions.resize(region + 1);
+  IssueTree::Region& iterations = parent->regions[region];
+  if (iterations.size() <= iteration) iterations.resize(iteration + 1);
+  strip.node = &iterations[iteration];
+  strip.next_region = 0;
+  strip.node->enabled_lanes += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(strip.enabled)));
+  body();
+  flush_issued();
+  strip.node->reached = true;
+  strip.node = parent;
+  strip.next_region = parent_next_region;
+}
+
+}  // namespace cn

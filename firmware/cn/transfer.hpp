@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/cn/lane_mask.hpp"
+#include "firmware/cn/mono_memory.hpp"
+#include "firmware/cn/poly_memory.hpp"
+
+namespace cn {
+
+/// A hardware semaphore: a counter that DMA, threads and the host signal and wait on.
+struct Semaphore {
+  int index = -1;
+};
+
+enum class Direction : std::uint8_t { mono_to_poly, poly_to_mono };
+
+/// One programmed-I/O request: every enabled PE moves `poly.size_bytes` between its SRAM and its own place in mono
+/// memory; `done` is signalled when all have.
+struct Transfer {
+  Direction direction = Direction::mono_to_poly;
+  PolySpan poly;
+  MonoPlaces mono;
+  LaneMask enabled;
+  Semaphore done;
+};
+
+/// Moves the bytes of a transfer; `mono` is the storage of mono address 0. Addresses and sizes are multiples of 8
+/// (checked by Machine).
+void move_data(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
+
+}  // namespace cn

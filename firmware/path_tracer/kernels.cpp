@@ -1,0 +1,240 @@
+// Built once for each x86-64 level; PATH_TRACER_KERNELS is the level's name for the table.
+
+#include "firmware/path_tracer/kernels.hpp"
+
+#include "firmware/path_tracer/sampling.hpp"
+#include "firmware/path_tracer/triangle.hpp"
+
+namespace path_tracer {
+namespace {
+
+poly<MonoAddress> place_of(MonoAddress first, const poly<std::int32_t>& index, std::size_t record_bytes) {
+  const cn::WideProduct offset =
+      cn::multiply_wide(cn::reinterpret_word<std::uint32_t>(index), static_cast<std::uint32_t>(record_bytes));
+  return cn::join_words(offset) + first;
+}
+
+mask kept_mask(const LaneMask& lanes) { return cn::recall(lanes); }
+
+void intersect(const IntersectArguments& arguments) {
+  const Point3 origin = arguments.ray.get(&RayRecord::origin);
+  const Direction3 direction = arguments.ray.get(&RayRecord::direction);
+  const Nearest nearest = nearest_triangle(origin, direction, arguments.ray.get(&RayRecord::left_face),
+                                           arguments.triangles, arguments.triangle_count);
+  const mask hit = nearest.triangle >= 0;
+  const mask front = nearest.determinant > 0.0;
+  const poly<double> distance = nearest.distance / cn::abs(nearest.determinant);
+  arguments.hit.set(&HitRecord::position, origin + direction * distance);
+  arguments.hit.set(&HitRecord::hit, cn::select(hit, poly<std::int32_t>(1), poly<std::int32_t>(0)));
+  arguments.hit.set(&HitRecord::front, cn::select(front, poly<std::int32_t>(1), poly<std::int32_t>(0)));
+  arguments.surface_place.write(place_of(arguments.surfaces, nearest.triangle, sizeof(SurfaceRecord)));
+  cn::keep(hit, *arguments.hit_something);
+}
+
+poly<double> largest(const vec3<poly<double>>& v) { return cn::max(v.x, cn::max(v.y, v.z)); }
+
+void scatter(const ScatterArguments& arguments) {
+  const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
+  const mask front = arguments.hit.get(&HitRecord::front) != 0;
+  const poly<std::int32_t> pixel = arguments.path.get(&PathRecord::pixel);
+  const poly<std::int32_t> sample = arguments.path.get(&PathRecord::sample);
+  const poly<std::int32_t> depth = arguments.path.get(&PathRecord::depth);
+  const vec3<poly<double>> reflectance = arguments.surface.get(&SurfaceRecord::reflectance);
+  const Direction3 surface_normal = arguments.surface.get(&SurfaceRecord::normal);
+  const Direction3 normal = cn::select(front, surface_normal, surface_normal * -1.0);
+  const Point3 position = arguments.hit.get(&HitRecord::position);
+  const Uniform4 random = uniform4(arguments.seed, pixel, sample, depth, Purpose::scatter);
+
+  // Russian roulette on the surface alone: the path before it need not be loaded.
+  const mask safe = depth < arguments.roulette_start;
+  const poly<double> survival =
+      cn::select(safe, poly<double>(1.0), cn::min(largest(reflectance), poly<double>(arguments.max_survival)));
+  const mask goes_on = hit & (random.value[2] < survival) & (largest(reflectance) > 0.0);
+  const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
+
+  const vec3<poly<double>> none{0.0, 0.0, 0.0};
+  const mask emits = hit & front & (arguments.light_by_shadow_rays ? depth == 0 : depth >= 0);
+  arguments.scatter.set(&ScatterRecord::position, position);
+  arguments.scatter.set(&ScatterRecord::direction, sample_cosine(normal, random.value[0], random.value[1]));
+  arguments.scatter.set(&ScatterRecord::radiance,
+                        cn::select(emits, arguments.surface.get(&SurfaceRecord::emission), none));
+  arguments.scatter.set(&ScatterRecord::weight, cn::select(goes_on, reflectance * inverse_survival, none));
+  const poly<std::int32_t> face = arguments.surface.get(&SurfaceRecord::face);
+  arguments.scatter.set(&ScatterRecord::face, face);
+  arguments.scatter.set(&ScatterRecord::ended, cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
+  if (!arguments.light_by_shadow_rays) return;
+
+  const Uniform4 on_light = uniform4(arguments.seed, pixel, sample, depth, Purpose::light);
+  const poly<std::int32_t> light = sample_cdf(arguments.light_cdf, arguments.light_count, random.value[3]);
+  arguments.light_place.write(place_of(arguments.lights, light, sizeof(LightRecord)));
+  arguments.shadow.set(&ShadowRecord::position, position);
+  arguments.shadow.set(&ShadowRecord::normal, normal);
+  arguments.shadow.set(&ShadowRecord::reflectance_over_pi, reflectance * (1.0 / kPi));
+  arguments.shadow.set(&ShadowRecord::light_u, on_light.value[0]);
+  arguments.shadow.set(&ShadowRecord::light_v, on_light.value[1]);
+  arguments.shadow.set(&ShadowRecord::face, face);
+  cn::keep(hit & (largest(reflectance) > 0.0), *arguments.wants_light);
+}
+
+void shadow(const ShadowArguments& arguments) {
+  const Point3 position = arguments.shadow.get(&ShadowRecord::position);
+  const Direction3 normal = arguments.shadow.get(&ShadowRecord::normal);
+  const Point3 on_light = sample_triangle(
+      arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
+      arguments.light.get(&LightRecord::edge2), arguments.shadow.get(&ShadowRecord::light_u),
+      arguments.shadow.get(&ShadowRecord::light_v));
+  const Direction3 to_light = on_light - position;
+  const poly<double> distance_squared = dot(to_light, to_light);
+  const poly<double> cosine_here = dot(to_light, normal);  // both cosines are scaled by the distance
+  const poly<double> cosine_there = -dot(to_light, arguments.light.get(&LightRecord::normal));
+  const mask faces = (cosine_here > 0.0) & (cosine_there > 0.0);
+  const mask blocked =
+      is_blocked(position, to_light, arguments.shadow.get(&ShadowRecord::face),
+                 arguments.light.get(&LightRecord::face), arguments.triangles, arguments.triangle_count);
+  const mask sees = faces & !blocked;
+  const poly<double> geometry = cosine_here * cosine_there / (distance_squared * distance_squared);
+  const vec3<poly<double>> light = arguments.light.get(&LightRecord::emission_over_pdf) *
+                                   arguments.shadow.get(&ShadowRecord::reflectance_over_pi) * geometry;
+  const vec3<poly<double>> none{0.0, 0.0, 0.0};
+  arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
+}
+
+void append(const AppendArguments& arguments) {
+  const poly<std::int32_t> vertices = arguments.path.get(&PathRecord::vertices);
+  const mask ended = arguments.scatter.get(&ScatterRecord::ended) != 0;
+  const mask finished = ended | (vertices + 1 >= arguments.slot_vertices);
+
+  vec3<poly<double>> radiance = arguments.scatter.get(&ScatterRecord::radiance);
+  cn::poly_if(kept_mask(*arguments.has_direct_light), [&] {
+    const vec3<poly<double>> sum = radiance + arguments.direct_light.get(&DirectLightRecord::radiance);
+    radiance = sum;
+  });
+  arguments.vertex.set(&VertexRecord::radiance, radiance);
+  arguments.vertex.set(&VertexRecord::weight, arguments.scatter.get(&ScatterRecord::weight));
+  const poly<std::int32_t> slot_in_block = cn::pe_num();
+  arguments.vertex_place.write(place_of(
+      arguments.block_vertices, slot_in_block * arguments.slot_vertices + vertices, sizeof(VertexRecord)));
+
+  const auto& entry = arguments.finished_record;
+  entry.set(&FinishedRecord::slot, slot_in_block + arguments.first_slot);
+  entry.set(&FinishedRecord::vertices, vertices + 1);
+  entry.set(&FinishedRecord::pixel, arguments.path.get(&PathRecord::pixel));
+  entry.set(&FinishedRecord::sample, arguments.path.get(&PathRecord::sample));
+  entry.set(&FinishedRecord::folded, arguments.path.get(&PathRecord::folded));
+  entry.set(&FinishedRecord::ended, arguments.scatter.get(&ScatterRecord::ended));
+  cn::keep(ended, *arguments.ended);
+  cn::keep(finished, *arguments.finished);
+}
+
+void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_t>& number) {
+  const std::int32_t pixels = arguments.camera->width * arguments.camera->height;
+  poly<std::int32_t> pixel = number + arguments.next_pixel;
+  poly<std::int32_t> sample = arguments.next_sample;
+  cn::poly_while([&] { return pixel >= pixels; },
+                 [&] {
+                   pixel -= pixels;
+                   sample += 1;
+                 });
+  const CameraRay ray = sample_camera(*arguments.camera, arguments.seed, pixel, sample);
+  arguments.ray.set(&RayRecord::origin, ray.origin);
+  arguments.ray.set(&RayRecord::direction, ray.direction);
+  arguments.ray.set(&RayRecord::left_face, poly<std::int32_t>(kNoFace));
+  arguments.next_path.set(&PathRecord::pixel, pixel);
+  arguments.next_path.set(&PathRecord::sample, sample);
+  arguments.next_path.set(&PathRecord::depth, poly<std::int32_t>(0));
+  arguments.next_path.set(&PathRecord::vertices, poly<std::int32_t>(0));
+  arguments.next_path.set(&PathRecord::folded, poly<std::int32_t>(0));
+}
+
+void continue_path(const ReplaceArguments& arguments) {
+  const mask flushed = kept_mask(*arguments.finished);
+  arguments.ray.set(&RayRecord::origin, arguments.scatter.get(&ScatterRecord::position));
+  arguments.ray.set(&RayRecord::direction, arguments.scatter.get(&ScatterRecord::direction));
+  arguments.ray.set(&RayRecord::left_face, arguments.scatter.get(&ScatterRecord::face));
+  arguments.next_path.set(&PathRecord::pixel, arguments.path.get(&PathRecord::pixel));
+  arguments.next_path.set(&PathRecord::sample, arguments.path.get(&PathRecord::sample));
+  arguments.next_path.set(&PathRecord::depth, arguments.path.get(&PathRecord::depth) + 1);
+  const poly<std::int32_t> vertices = arguments.path.get(&PathRecord::vertices) + 1;
+  arguments.next_path.set(&PathRecord::vertices, cn::select(flushed, poly<std::int32_t>(0), vertices));
+  const poly<std::int32_t> folded = arguments.path.get(&PathRecord::folded);
+  arguments.next_path.set(&PathRecord::folded, cn::select(flushed, poly<std::int32_t>(1), folded));
+}
+
+void replace(const ReplaceArguments& arguments) {
+  const mask ended = kept_mask(*arguments.ended);
+  const poly<std::int32_t> number = arguments.number.read();
+  const mask starts = ended & (number < arguments.remaining);
+  cn::poly_if_any(starts, [&] { start_camera_path(arguments, number); });
+  cn::poly_if_any(!ended, [&] { continue_path(arguments); });
+  cn::keep(starts | !ended, *arguments.live);
+}
+
+void finished_place(const FinishedPlaceArguments& arguments) {
+  arguments.finished_place.write(
+      place_of(arguments.next_finished, arguments.number.read(), sizeof(FinishedRecord)));
+}
+
+void list(const ListArguments& arguments) {
+  const poly<std::int32_t> slot = arguments.entry.get(&FinishedRecord::slot);
+  const poly<std::int32_t> vertices = arguments.entry.get(&FinishedRecord::vertices);
+  arguments.vertex_place.write(
+      place_of(arguments.vertices, slot, std::size_t(arguments.slot_vertices) * sizeof(VertexRecord)));
+  arguments.fold_place.write(place_of(arguments.folds, slot, sizeof(FoldRecord)));
+  for (int load = 0; load * kVerticesPerLoad < arguments.slot_vertices; ++load)
+    cn::keep(vertices > load * kVerticesPerLoad, arguments.needs_load[load]);
+  cn::keep(arguments.entry.get(&FinishedRecord::folded) != 0, *arguments.folded);
+  cn::keep(arguments.entry.get(&FinishedRecord::ended) == 0, *arguments.flushed);
+}
+
+void fold(const FoldArguments& arguments) {
+  vec3<poly<double>> radiance = arguments.sum.get(&FoldRecord::radiance);
+  vec3<poly<double>> throughput = arguments.sum.get(&FoldRecord::throughput);
+  if (arguments.first_vertex == 0) {
+    const mask folded = arguments.entry.get(&FinishedRecord::folded) != 0;
+    const vec3<poly<double>> none{0.0, 0.0, 0.0};
+    const vec3<poly<double>> one{1.0, 1.0, 1.0};
+    radiance = cn::select(folded, arguments.earlier.get(&FoldRecord::radiance), none);
+    throughput = cn::select(folded, arguments.earlier.get(&FoldRecord::throughput), one);
+  }
+  const poly<std::int32_t> vertices = arguments.entry.get(&FinishedRecord::vertices);
+  for (int i = 0; i < kVerticesPerLoad; ++i) {
+    cn::poly_if(vertices > arguments.first_vertex + i, [&] {
+      const PolyPointer<VertexRecord> vertex = arguments.vertices[i];
+      radiance = radiance + throughput * vertex.get(&VertexRecord::radiance);
+      throughput = throughput * vertex.get(&VertexRecord::weight);
+    });
+  }
+  arguments.sum.set(&FoldRecord::radiance, radiance);
+  arguments.sum.set(&FoldRecord::throughput, throughput);
+  arguments.flushed.set(&FoldRecord::radiance, radiance);
+  arguments.flushed.set(&FoldRecord::throughput, throughput);
+
+  const mask ended = arguments.entry.get(&FinishedRecord::ended) != 0;
+  const poly<std::int32_t> pixel = arguments.entry.get(&FinishedRecord::pixel);
+  arguments.radiance.set(&RadianceRecord::radiance, radiance);
+  arguments.radiance.set(&RadianceRecord::pixel, cn::select(ended, pixel, poly<std::int32_t>(-1)));
+  arguments.radiance.set(&RadianceRecord::sample, arguments.entry.get(&FinishedRecord::sample));
+}
+
+template <class Arguments, void (*program)(const Arguments&)>
+constexpr cn::Kernel<Arguments> kernel(const char* name) {
+  return {name, &cn::run_strips<Arguments, program>};
+}
+
+}  // namespace
+
+const Kernels& PATH_TRACER_KERNELS() {
+  static constexpr Kernels table{
+      kernel<IntersectArguments, intersect>("intersect"),
+      kernel<ScatterArguments, scatter>("scatter"),
+      kernel<ShadowArguments, shadow>("shadow"),
+      kernel<AppendArguments, append>("append"),
+      kernel<ReplaceArguments, replace>("replace"),
+      kernel<FinishedPlaceArguments, finished_place>("finished_place"),
+      kernel<ListArguments, list>("list"),
+      kernel<FoldArguments, fold>("fold"),
+  };
+  return table;
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,133 @@
+#include <algorithm>
+
+#include "firmware/path_tracer/stages.hpp"
+
+namespace path_tracer {
+
+CameraRays::CameraRays(const Work& work, int pixels)
+    : total_(std::uint64_t(work.samples) * std::uint64_t(pixels)), first_sample_(work.first_sample), pixels_(pixels) {}
+
+PathStage::PathStage(const StageContext& context, const Work& work)
+    : Stage(context),
+      camera_rays_(work, [&] {
+        const CameraRecord& camera = *context.machine.read_mono(context.layout.camera);
+        return camera.width * camera.height;
+      }()),
+      number_{context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes} {}
+
+PathStage::Loads PathStage::loads(std::uint64_t step) const {
+  BufferCutter cutter(context_.loads.buffer(step));
+  return {cutter.take<PathRecord>(), cutter.take<ScatterRecord>(), cutter.take<DirectLightRecord>()};
+}
+
+PathStage::Saves PathStage::saves(std::uint64_t step) const {
+  BufferCutter cutter(context_.saves.buffer(step));
+  return {cutter.take<VertexRecord>(),   cutter.take<PathRecord>(), cutter.take<RayRecord>(),
+          cutter.take<FinishedRecord>(), cutter.take_place(),       cutter.take_place()};
+}
+
+void PathStage::load(std::uint64_t step, int block) {
+  context_.saves.wait_block(block);
+  const Loads to = loads(step);
+  const Bins::Block& bin = bin_block(block);
+  load_block(step, block, to.path, context_.layout.path_bin, bin.live);
+  load_block(step, block, to.scatter, context_.layout.scatter_bin, bin.live);
+  if (context_.config.program != Program::segments)
+    load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.wants_light);
+}
+
+void PathStage::process(std::uint64_t step, int block) {
+  append_vertices(step, block);
+  const int ended_count = context_.machine.count(ended_);
+  list_finished(step);
+  if (!(finished_ == ended_)) {
+    context_.machine.number_ascending(ended_, number_);
+    context_.counts.folds += std::uint64_t(finished_.count() - ended_count);
+  }
+  replace_ended(step, block, ended_count);
+}
+
+void PathStage::append_vertices(std::uint64_t step, int block) {
+  const Bins::Block& bin = bin_block(block);
+  const Loads from = loads(step);
+  const Saves to = saves(step);
+  appended_ = bin.live;
+  ended_ = LaneMask{};
+  finished_ = LaneMask{};
+  AppendArguments arguments;
+  arguments.path = from.path;
+  arguments.scatter = from.scatter;
+  arguments.direct_light = from.direct_light;
+  arguments.has_direct_light = &bin.wants_light;
+  arguments.slot_vertices = context_.config.slot_vertices;
+  arguments.first_slot = static_cast<int>(first_slot(block));
+  arguments.block_vertices =
+      (context_.layout.vertices + first_slot(block) * std::uint64_t(arguments.slot_vertices)).address;
+  arguments.vertex = to.vertex;
+  arguments.vertex_place = to.vertex_place;
+  arguments.finished_record = to.finished;
+  arguments.ended = &ended_;
+  arguments.finished = &finished_;
+  context_.machine.run(context_.kernels.append, arguments, appended_);
+}
+
+void PathStage::list_finished(std::uint64_t step) {
+  const int count = context_.machine.number_ascending(finished_, number_);
+  FinishedPlaceArguments arguments;
+  arguments.number = number_;
+  arguments.next_finished = (context_.layout.finished + std::uint64_t(finished_count_)).address;
+  arguments.finished_place = saves(step).finished_place;
+  context_.machine.run(context_.kernels.finished_place, arguments, finished_);
+  finished_count_ += count;
+}
+
+void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
+  Bins::Block& bin = bin_block(block);
+  const Loads from = loads(step);
+  const Saves to = saves(step);
+  const auto started =
+      static_cast<std::int32_t>(std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
+  LaneMask live;
+  ReplaceArguments arguments;
+  arguments.path = from.path;
+  arguments.scatter = from.scatter;
+  arguments.number = number_;
+  arguments.ended = &ended_;
+  arguments.finished = &finished_;
+  arguments.camera = context_.machine.read_mono(context_.layout.camera);
+  arguments.seed = context_.config.seed;
+  arguments.next_pixel = camera_rays_.next_pixel();
+  arguments.next_sample = camera_rays_.next_sample();
+  arguments.remaining = started;
+  arguments.next_path = to.path;
+  arguments.ray = to.ray;
+  arguments.live = &live;
+  context_.machine.run(context_.kernels.replace, arguments, appended_);
+  camera_rays_.issue(std::uint64_t(started));
+  bin.live = live;
+  bin.live_count = appended_.count() - ended_count + started;
+}
+
+void PathStage::fill(std::uint64_t step, int block) {
+  appended_ = LaneMask::first(num_pes());
+  ended_ = appended_;
+  finished_ = LaneMask{};
+  const int count = context_.machine.number_ascending(ended_, number_);
+  replace_ended(step, block, count);
+  appended_ = LaneMask{};
+}
+
+void PathStage::save(std::uint64_t step, int block) {
+  const Saves from = saves(step);
+  const Bins::Block& bin = bin_block(block);
+  if (appended_.any()) {
+    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.vertex_place), from.vertex.span(), appended_);
+    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place), from.finished.span(),
+                            finished_);
+  }
+  save_block(step, block, context_.layout.path_bin, from.path, bin.live);
+  save_block(step, block, context_.layout.ray_bin, from.ray, bin.live);
+  context_.bins.last_path_step = step;
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "firmware/cn/machine.hpp"
+#include "firmware/path_tracer/records.hpp"
+
+namespace path_tracer {
+
+/// What is timed, as the columns of the paper's tables.
+enum class Program : std::uint8_t {
+  segments,  ///< path segments only; light is found by hitting it
+  direct,    ///< plus one shadow ray a segment
+  full,      ///< plus the radiance of finished paths
+};
+
+inline constexpr int kMaxBuffers = 8;
+
+/// Vertices that one step of the radiance stage loads a path.
+inline constexpr int kVerticesPerLoad = 4;
+
+/// How the firmware is built and run; independent of the scene.
+struct ProgramConfig {
+  Program program = Program::full;
+  int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
+  bool buffer_loads = true;
+  bool buffer_saves = true;
+  int bin_blocks = 16;          ///< length of each bin in blocks of one SIMD width
+  int slot_vertices = 16;       ///< vertices a path slot holds; a multiple of kVerticesPerLoad
+  int roulette_start = 0;       ///< segments a path lives without roulette
+  double max_survival = 0.95;   ///< so that paths between white surfaces end
+  std::uint64_t seed = 1;
+
+  int load_buffers() const { return buffer_loads ? n + 1 : 1; }
+  int save_buffers() const { return buffer_saves ? n + 1 : 1; }
+};
+
+/// The work: samples [first_sample, first_sample + samples) of every pixel.
+struct Work {
+  int first_sample = 0;
+  int samples = 1;
+};
+
+/// Thrown for a configuration that the bins cannot hold; one line.
+class ProgramError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws ProgramError that names the argument, the value and what is allowed.
+void validate(const ProgramConfig& config);
+
+/// Where everything lies in mono memory.
+struct Layout {
+  // Written by the host before the run.
+  cn::MonoPointer<CameraRecord> camera;
+  cn::MonoPointer<TriangleRecord> triangles;
+  cn::MonoPointer<SurfaceRecord> surfaces;
+  cn::MonoPointer<LightRecord> lights;
+  cn::MonoPointer<double> light_cdf;  ///< probability of light 0..i, one a light
+  int triangle_count = 0;
+  int light_count = 0;
+
+  // Bins, one record a slot (vertices: slot_vertices a slot).
+  cn::MonoPointer<RayRecord> ray_bin;
+  cn::MonoPointer<HitRecord> intersection_bin;
+  cn::MonoPointer<ScatterRecord> scatter_bin;
+  cn::MonoPointer<ShadowRecord> shadow_bin;
+  cn::MonoPointer<DirectLightRecord> direct_light_bin;
+  cn::MonoPointer<PathRecord> path_bin;
+  cn::MonoPointer<VertexRecord> vertices;
+  cn::MonoPointer<FoldRecord> folds;
+  cn::MonoPointer<FinishedRecord> finished;
+
+  // Read by the host; two halves, taken in turn, so that one can be read while the other is filled.
+  cn::MonoPointer<ResultsHeader> results_header[2];
+  cn::MonoPointer<RadianceRecord> results[2];
+
+  std::uint64_t scene_bytes = 0;  ///< the host writes [0, scene_bytes)
+  std::uint64_t total_bytes = 0;
+};
+
+Layout make_layout(int triangle_count, int light_count, int num_pes, const ProgramConfig& config);
+
+/// Counts that belong to the firmware, not to the chip.
+struct RunCounts {
+  std::uint64_t paths = 0;
+  std::uint64_t segments = 0;
+  std::uint64_t shadow_rays = 0;
+  std::uint64_t folds = 0;           ///< paths flushed because their slot was full
+  std::uint64_t blocks = 0;          ///< blocks of the ray bin processed
+  std::uint64_t skipped_blocks = 0;  ///< empty blocks of the ray bin that were not
+  std::uint64_t steps = 0;
+};
+
+}  // namespace path_tracer

@@ -1,0 +1,106 @@
+#include "firmware/path_tracer/stages.hpp"
+
+namespace path_tracer {
+
+RadianceStage::RadianceStage(const StageContext& context)
+    : loads_per_path_(context.config.slot_vertices / kVerticesPerLoad),
+      blocks_(std::size_t(context.config.bin_blocks)),
+      list_(context, blocks_),
+      fold_(context, blocks_) {
+  cn::PolyMemory& memory = context.machine.poly_memory();
+  const int places_bytes = static_cast<int>(sizeof(MonoAddress)) * context.config.bin_blocks;
+  BufferCutter vertex_places(memory.allocate("vertex places", places_bytes));
+  BufferCutter fold_places(memory.allocate("fold places", places_bytes));
+  for (ListBlock& block : blocks_) {
+    block.vertex_place = vertex_places.take_place();
+    block.fold_place = fold_places.take_place();
+    block.needs_load.resize(std::size_t(loads_per_path_));
+  }
+}
+
+void RadianceStage::ListStage::load(std::uint64_t step, int block) {
+  context_.saves.wait_until(context_.bins.last_path_step);
+  const PolyPointer<FinishedRecord> entry(context_.loads.buffer(step));
+  load_block(step, block, entry, context_.layout.finished, LaneMask::first(blocks_[std::size_t(block)].entries));
+}
+
+void RadianceStage::ListStage::process(std::uint64_t step, int block) {
+  ListBlock& list = blocks_[std::size_t(block)];
+  list.needs_load.assign(list.needs_load.size(), LaneMask{});
+  list.folded = LaneMask{};
+  list.flushed = LaneMask{};
+  ListArguments arguments;
+  arguments.entry = PolyPointer<FinishedRecord>(context_.loads.buffer(step));
+  arguments.vertices = context_.layout.vertices.address;
+  arguments.folds = context_.layout.folds.address;
+  arguments.slot_vertices = context_.config.slot_vertices;
+  arguments.vertex_place = list.vertex_place;
+  arguments.fold_place = list.fold_place;
+  arguments.needs_load = list.needs_load.data();
+  arguments.folded = &list.folded;
+  arguments.flushed = &list.flushed;
+  context_.machine.run(context_.kernels.list, arguments, LaneMask::first(list.entries));
+  list.loads = 0;
+  for (const LaneMask& needed : list.needs_load) {
+    if (context_.machine.count(needed) == 0) break;
+    ++list.loads;
+  }
+}
+
+RadianceStage::FoldStage::FoldStage(const StageContext& context, std::vector<ListBlock>& blocks)
+    : Stage(context),
+      blocks_(blocks),
+      loads_per_path_(context.config.slot_vertices / kVerticesPerLoad),
+      sum_(context.machine.poly_memory().allocate("radiance sum", sizeof(FoldRecord))) {}
+
+RadianceStage::FoldStage::Loads RadianceStage::FoldStage::loads(std::uint64_t step) const {
+  BufferCutter cutter(context_.loads.buffer(step));
+  return {cutter.take<FinishedRecord>(), cutter.take<FoldRecord>(), cutter.take<VertexRecord>(kVerticesPerLoad)};
+}
+
+RadianceStage::FoldStage::Saves RadianceStage::FoldStage::saves(std::uint64_t step) const {
+  BufferCutter cutter(context_.saves.buffer(step));
+  return {cutter.take<RadianceRecord>(), cutter.take<FoldRecord>()};
+}
+
+void RadianceStage::FoldStage::load(std::uint64_t step, int block) {
+  context_.saves.wait_until(context_.bins.last_path_step);
+  const Loads to = loads(step);
+  const ListBlock& list = list_block(block);
+  const int load = load_of(block);
+  const LaneMask entries = LaneMask::first(list.entries);
+  const cn::MonoPlaces list_places = block_of(context_.layout.finished, list_index(block));
+  context_.loads.copy_m2p(step, block, to.entry.span(), list_places, entries);
+  if (load == 0)
+    context_.loads.copy_m2p(step, block, to.earlier.span(), context_.machine.places_in(list.fold_place), list.folded);
+  constexpr int kBytes = kVerticesPerLoad * static_cast<int>(sizeof(VertexRecord));
+  context_.loads.copy_m2p(step, block, {to.vertices.span().offset_bytes, kBytes},
+                          context_.machine.places_in(list.vertex_place, std::uint64_t(load) * kBytes),
+                          list.needs_load[std::size_t(load)]);
+}
+
+void RadianceStage::FoldStage::process(std::uint64_t step, int block) {
+  const Loads from = loads(step);
+  const ListBlock& list = list_block(block);
+  FoldArguments arguments;
+  arguments.entry = from.entry;
+  arguments.vertices = from.vertices;
+  arguments.earlier = from.earlier;
+  arguments.sum = PolyPointer<FoldRecord>(sum_);
+  arguments.first_vertex = load_of(block) * kVerticesPerLoad;
+  const Saves to = saves(step);
+  arguments.radiance = to.radiance;
+  arguments.flushed = to.flushed;
+  context_.machine.run(context_.kernels.fold, arguments, LaneMask::first(list.entries));
+}
+
+void RadianceStage::FoldStage::save(std::uint64_t step, int block) {
+  if (!is_last(block)) return;
+  const ListBlock& list = list_block(block);
+  const Saves from = saves(step);
+  context_.saves.copy_p2m(step, block, block_of(results_, list_index(block)), from.radiance.span(),
+                          LaneMask::first(list.entries));
+  context_.saves.copy_p2m(step, block, context_.machine.places_in(list.fold_place), from.flushed.span(), list.flushed);
+}
+
+}  // namespace path_tracer

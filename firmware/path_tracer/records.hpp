@@ -1,0 +1,140 @@
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/cn/vec3.hpp"
+
+/// What lies in mono memory, record by record. Poly buffers hold the same layouts, so a transfer is a plain copy.
+namespace path_tracer {
+
+using cn::vec3;
+
+inline constexpr std::int32_t kNoFace = -1;
+
+/// How the camera turns a film position into a direction: corner + right * x + down * y, x and y in pixels.
+struct CameraRecord {
+  vec3<double> position{};
+  vec3<double> corner{};
+  vec3<double> right{};
+  vec3<double> down{};
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+};
+
+/// For intersection (Moeller and Trumbore 1997). Triangles that touch in one plane share a face: a ray that leaves a
+/// face ignores it, so no distance threshold is needed to keep a surface from shadowing itself.
+struct TriangleRecord {
+  vec3<double> vertex{};
+  vec3<double> edge1{};
+  vec3<double> edge2{};
+  std::int32_t face = kNoFace;
+  std::int32_t unused = 0;
+};
+
+/// For shading, one a triangle: "around 10 double precision floats" (paper, section 4.1).
+struct SurfaceRecord {
+  vec3<double> normal{};  ///< unit length, towards the front
+  vec3<double> reflectance{};
+  vec3<double> emission{};
+  std::int32_t face = kNoFace;
+  std::int32_t unused = 0;
+};
+
+/// A triangle that emits from its front.
+struct LightRecord {
+  vec3<double> vertex{};
+  vec3<double> edge1{};
+  vec3<double> edge2{};
+  vec3<double> normal{};
+  vec3<double> emission_over_pdf{};  ///< emission / (probability of this light / its area)
+  std::int32_t face = kNoFace;
+  std::int32_t unused = 0;
+};
+
+/// Ray bin.
+struct RayRecord {
+  vec3<double> origin{};
+  vec3<double> direction{};
+  std::int32_t left_face = kNoFace;  ///< the face that the ray leaves
+  std::int32_t unused = 0;
+};
+
+/// Intersection bin.
+struct HitRecord {
+  vec3<double> position{};
+  std::int32_t hit = 0;    ///< 1 when something was hit
+  std::int32_t front = 0;  ///< 1 when its front was
+};
+
+/// Intersection stage to path bin: the vertex and the ray that goes on from it.
+struct ScatterRecord {
+  vec3<double> position{};
+  vec3<double> direction{};
+  vec3<double> radiance{};  ///< that the vertex sends towards the path's start, without direct light
+  vec3<double> weight{};    ///< factor for all that comes from behind the vertex
+  std::int32_t face = kNoFace;
+  std::int32_t ended = 0;
+};
+
+/// Intersection stage to shadow stage.
+struct ShadowRecord {
+  vec3<double> position{};
+  vec3<double> normal{};  ///< on the side that the path arrived from
+  vec3<double> reflectance_over_pi{};
+  double light_u = 0;
+  double light_v = 0;
+  std::int32_t face = kNoFace;
+  std::int32_t unused = 0;
+};
+
+/// Shadow stage to path bin.
+struct DirectLightRecord {
+  vec3<double> radiance{};
+};
+
+/// Path bin, one a slot: which path it is and how far.
+struct PathRecord {
+  std::int32_t pixel = 0;
+  std::int32_t sample = 0;
+  std::int32_t depth = 0;     ///< segments traced so far
+  std::int32_t vertices = 0;  ///< in the slot
+  std::int32_t folded = 0;    ///< 1 when earlier vertices were folded into a FoldRecord
+  std::int32_t unused = 0;
+};
+
+/// Path bin, slot_vertices of them a slot.
+struct VertexRecord {
+  vec3<double> radiance{};
+  vec3<double> weight{};
+};
+
+/// Vertices of a path that did not fit its slot, folded.
+struct FoldRecord {
+  vec3<double> radiance{};
+  vec3<double> throughput{};
+};
+
+/// A path whose vertices in the slot wait for their radiance: it ended, or its slot is full.
+struct FinishedRecord {
+  std::int32_t slot = 0;
+  std::int32_t vertices = 0;
+  std::int32_t pixel = 0;
+  std::int32_t sample = 0;
+  std::int32_t folded = 0;
+  std::int32_t ended = 0;
+};
+
+/// The result of a path, for the host. A pixel of -1 is no result.
+struct RadianceRecord {
+  vec3<double> radiance{};
+  std::int32_t pixel = -1;
+  std::int32_t sample = 0;
+};
+
+/// What the firmware tells the host before it signals that a half of the results is ready.
+struct ResultsHeader {
+  std::int32_t records = 0;
+  std::int32_t unused = 0;
+};
+
+}  // namespace path_tracer

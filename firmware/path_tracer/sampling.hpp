@@ -1,0 +1,74 @@
+#pragma once
+
+#include "firmware/cn/control.hpp"
+#include "firmware/path_tracer/random.hpp"
+#include "firmware/path_tracer/records.hpp"
+
+namespace path_tracer {
+
+using cn::mask;
+using cn::poly;
+using Direction3 = vec3<poly<double>>;
+using Point3 = vec3<poly<double>>;
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+/// A vector to unit length. One that has none to speak of becomes `fallback`.
+inline Direction3 normalize(const Direction3& v, const Direction3& fallback) {
+  constexpr double kTooShort = 1e-30;
+  const poly<double> length_squared = dot(v, v);
+  const mask usable = length_squared > kTooShort;
+  const poly<double> scale = 1.0 / cn::sqrt(cn::select(usable, length_squared, poly<double>(1.0)));
+  return cn::select(usable, v * scale, fallback);
+}
+
+/// Directions with density cos / pi around a unit normal: the normal plus a point of the unit sphere, which needs no
+/// tangents.
+inline Direction3 sample_cosine(const Direction3& normal, const poly<double>& u, const poly<double>& v) {
+  const poly<double> z = 1.0 - 2.0 * u;
+  const poly<double> radius = cn::sqrt(1.0 - z * z);
+  const cn::SineCosine angle = cn::sincos(2.0 * kPi * v);
+  const Direction3 on_sphere{radius * angle.cosine, radius * angle.sine, z};
+  return normalize(normal + on_sphere, normal);
+}
+
+/// A point of a triangle, uniform in area: the parallelogram's outer half is turned back in.
+inline Point3 sample_triangle(const Point3& vertex, const Direction3& edge1, const Direction3& edge2,
+                              const poly<double>& u, const poly<double>& v) {
+  const mask outside = u + v > 1.0;
+  const poly<double> a = cn::select(outside, 1.0 - u, u);
+  const poly<double> b = cn::select(outside, 1.0 - v, v);
+  return vertex + edge1 * a + edge2 * b;
+}
+
+/// The first entry of a cumulative distribution that is above u, by asking the mono table entry by entry.
+inline poly<std::int32_t> sample_cdf(const double* cdf, int count, const poly<double>& u) {
+  poly<std::int32_t> chosen = 0;
+  for (int i = 0; i + 1 < count; ++i) {
+    cn::issue(cn::InstructionClass::mono, 4);
+    cn::poly_if(u >= cdf[i], [&] { chosen = i + 1; });
+  }
+  return chosen;
+}
+
+struct CameraRay {
+  Point3 origin;
+  Direction3 direction;
+};
+
+/// Through a uniform point of the pixel: the film's filter is a box one pixel wide.
+inline CameraRay sample_camera(const CameraRecord& camera, std::uint64_t seed, const poly<std::int32_t>& pixel,
+                               const poly<std::int32_t>& sample) {
+  const Uniform4 random = uniform4(seed, pixel, sample, 0, Purpose::camera);
+  // PEs cannot divide integers; half a pixel off the quotient's integers, the truncated product is exact.
+  const poly<double> row_position = (cn::convert<double>(pixel) + 0.5) * (1.0 / camera.width);
+  const poly<std::int32_t> row = cn::convert<std::int32_t>(row_position);
+  const poly<std::int32_t> column = pixel - row * camera.width;
+  const poly<double> x = cn::convert<double>(column) + random.value[0];
+  const poly<double> y = cn::convert<double>(row) + random.value[1];
+  const Direction3 through = camera.right * x + camera.down * y + camera.corner;
+  const Point3 origin{camera.position.x, camera.position.y, camera.position.z};
+  return {origin, normalize(through, through)};
+}
+
+}  // namespace path_tracer

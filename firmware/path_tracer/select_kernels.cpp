@@ -1,0 +1,21 @@
+#include "firmware/path_tracer/kernels.hpp"
+
+namespace path_tracer {
+
+const Kernels& kernels_x86_64_v2();
+const Kernels& kernels_x86_64_v3();
+const Kernels& kernels_x86_64_v4();
+
+const Kernels& kernels(Level level) {
+  switch (level) {
+    case Level::x86_64_v4:
+      return kernels_x86_64_v4();
+    case Level::x86_64_v3:
+      return kernels_x86_64_v3();
+    case Level::x86_64_v2:
+      break;
+  }
+  return kernels_x86_64_v2();
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <vector>
+
+#include "firmware/path_tracer/kernels.hpp"
+#include "firmware/path_tracer/transfer_ring.hpp"
+
+namespace path_tracer {
+
+/// What is known of the bins outside mono memory: conditions that PEs hold for each block and the addresses kept in
+/// poly memory from one bin to the next (paper, section 3.3: "a small piece of data is kept in poly memory").
+struct Bins {
+  struct Block {
+    LaneMask live;           ///< slots that hold a path
+    int live_count = 0;
+    LaneMask hit_something;
+    LaneMask wants_light;
+    PolyField<MonoAddress> surface_place;
+    PolyField<MonoAddress> light_place;
+  };
+  std::vector<Block> blocks;
+  std::uint64_t last_path_step = 0;  ///< the latest step that saved vertices and the list of finished paths
+};
+
+/// What every stage works with.
+struct StageContext {
+  cn::Machine& machine;
+  const Kernels& kernels;
+  const ProgramConfig& config;
+  const Layout& layout;
+  TransferRing& loads;
+  TransferRing& saves;
+  Bins& bins;
+  RunCounts& counts;
+};
+
+/// Cuts records off a ring buffer, in order.
+class BufferCutter {
+ public:
+  explicit BufferCutter(cn::PolySpan buffer) : offset_bytes_(buffer.offset_bytes) {}
+
+  template <class Record>
+  PolyPointer<Record> take(int count = 1) {
+    const PolyPointer<Record> start(offset_bytes_);
+    offset_bytes_ += count * PolyPointer<Record>::size_bytes();
+    return start;
+  }
+  PolyField<MonoAddress> take_place() {
+    const PolyField<MonoAddress> place{offset_bytes_};
+    offset_bytes_ += static_cast<int>(sizeof(MonoAddress));
+    return place;
+  }
+
+ private:
+  int offset_bytes_;
+};
+
+/// One bin's work on one block: load, process, save. The pipeline (path_tracer.hpp) decides when.
+class Stage {
+ public:
+  explicit Stage(const StageContext& context) : context_(context) {}
+  virtual ~Stage() = default;
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  virtual void load(std::uint64_t step, int block) = 0;
+  virtual void process(std::uint64_t step, int block) = 0;
+  virtual void save(std::uint64_t step, int block) = 0;
+
+ protected:
+  int num_pes() const { return context_.machine.num_pes(); }
+  std::uint64_t first_slot(int block) const { return std::uint64_t(block) * std::uint64_t(num_pes()); }
+
+  template <class Record>
+  cn::MonoPlaces block_of(cn::MonoPointer<Record> bin, int block) const {
+    return cn::MonoPlaces::array((bin + first_slot(block)).address, sizeof(Record));
+  }
+
+  template <class Record>
+  void load_block(std::uint64_t step, int block, PolyPointer<Record> to, cn::MonoPointer<Record> bin,
+                  const LaneMask& enabled) {
+    context_.loads.copy_m2p(step, block, to.span(), block_of(bin, block), enabled);
+  }
+  template <class Record>
+  void save_block(std::uint64_t step, int block, cn::MonoPointer<Record> bin, PolyPointer<Record> from,
+                  const LaneMask& enabled) {
+    context_.saves.copy_p2m(step, block, block_of(bin, block), from.span(), enabled);
+  }
+
+  Bins::Block& bin_block(int block) const { return context_.bins.blocks[std::size_t(block)]; }
+
+  StageContext context_;
+};
+
+}  // namespace path_tracer

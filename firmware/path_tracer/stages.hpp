@@ -1,0 +1,214 @@
+#pragma once
+
+#include "firmware/path_tracer/stage.hpp"
+
+/// The bins of the circular buffer (paper, figure 1) and the shadow rays of direct lighting.
+namespace path_tracer {
+
+/// Ray bin: intersects each ray with the scene.
+class RayStage : public Stage {
+ public:
+  using Stage::Stage;
+  static constexpr int kLoadBytes = sizeof(RayRecord);
+  static constexpr int kSaveBytes = sizeof(HitRecord);
+
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int block) override;
+};
+
+/// Intersection bin: shading details, new direction, roulette, and which light to ask.
+class IntersectionStage : public Stage {
+ public:
+  using Stage::Stage;
+  static constexpr int kLoadBytes = sizeof(HitRecord) + sizeof(SurfaceRecord) + sizeof(PathRecord);
+  static constexpr int kSaveBytes = sizeof(ScatterRecord) + sizeof(ShadowRecord);
+
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int block) override;
+
+ private:
+  struct Loads {
+    PolyPointer<HitRecord> hit;
+    PolyPointer<SurfaceRecord> surface;
+    PolyPointer<PathRecord> path;
+  };
+  struct Saves {
+    PolyPointer<ScatterRecord> scatter;
+    PolyPointer<ShadowRecord> shadow;
+  };
+  Loads loads(std::uint64_t step) const;
+  Saves saves(std::uint64_t step) const;
+};
+
+/// One shadow ray a segment.
+class ShadowStage : public Stage {
+ public:
+  using Stage::Stage;
+  static constexpr int kLoadBytes = sizeof(ShadowRecord) + sizeof(LightRecord);
+  static constexpr int kSaveBytes = sizeof(DirectLightRecord);
+
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int block) override;
+
+ private:
+  struct Loads {
+    PolyPointer<ShadowRecord> shadow;
+    PolyPointer<LightRecord> light;
+  };
+  Loads loads(std::uint64_t step) const;
+};
+
+/// The camera rays still to be issued, in the order sample by sample, pixel by pixel.
+class CameraRays {
+ public:
+  CameraRays(const Work& work, int pixels);
+
+  std::int32_t next_pixel() const { return static_cast<std::int32_t>(next_ % std::uint64_t(pixels_)); }
+  std::int32_t next_sample() const { return first_sample_ + static_cast<std::int32_t>(next_ / std::uint64_t(pixels_)); }
+  std::uint64_t remaining() const { return total_ - next_; }
+  void issue(std::uint64_t count) { next_ += count; }
+  std::uint64_t issued() const { return next_; }
+
+ private:
+  std::uint64_t next_ = 0;
+  std::uint64_t total_;
+  std::int32_t first_sample_;
+  int pixels_;
+};
+
+/// Path bin: appends the vertex and puts the next camera ray in the place of a path that ended. Lists the paths that
+/// wait for their radiance, packed by ascending numbers.
+class PathStage : public Stage {
+ public:
+  PathStage(const StageContext& context, const Work& work);
+  static constexpr int kLoadBytes = sizeof(PathRecord) + sizeof(ScatterRecord) + sizeof(DirectLightRecord);
+  static constexpr int kSaveBytes = sizeof(VertexRecord) + sizeof(PathRecord) + sizeof(RayRecord) +
+                                    sizeof(FinishedRecord) + 2 * sizeof(MonoAddress);
+
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int block) override;
+
+  /// Fills an empty block with camera rays; takes the place of load and process.
+  void fill(std::uint64_t step, int block);
+
+  /// Paths listed since the last clear_finished().
+  int finished_count() const { return finished_count_; }
+  void clear_finished() { finished_count_ = 0; }
+
+  const CameraRays& camera_rays() const { return camera_rays_; }
+
+ private:
+  struct Loads {
+    PolyPointer<PathRecord> path;
+    PolyPointer<ScatterRecord> scatter;
+    PolyPointer<DirectLightRecord> direct_light;
+  };
+  struct Saves {
+    PolyPointer<VertexRecord> vertex;
+    PolyPointer<PathRecord> path;
+    PolyPointer<RayRecord> ray;
+    PolyPointer<FinishedRecord> finished;
+    PolyField<MonoAddress> vertex_place;
+    PolyField<MonoAddress> finished_place;
+  };
+  Loads loads(std::uint64_t step) const;
+  Saves saves(std::uint64_t step) const;
+  void append_vertices(std::uint64_t step, int block);
+  void list_finished(std::uint64_t step);
+  void replace_ended(std::uint64_t step, int block, int ended_count);
+
+  CameraRays camera_rays_;
+  PolyField<std::int32_t> number_;
+  // Of the block in hand, from process to save.
+  LaneMask appended_;
+  LaneMask ended_;
+  LaneMask finished_;
+  int finished_count_ = 0;
+};
+
+/// Radiance of the paths that the path stage listed, vertex by vertex (paper, section 3.1). Its blocks are blocks of the
+/// list; each takes one list step and then as many fold steps as its longest path needs.
+class RadianceStage {
+ public:
+  explicit RadianceStage(const StageContext& context);
+  static constexpr int kLoadBytes =
+      sizeof(FinishedRecord) + sizeof(FoldRecord) + kVerticesPerLoad * sizeof(VertexRecord);
+  static constexpr int kSaveBytes = sizeof(RadianceRecord) + sizeof(FoldRecord);
+
+  /// What is known of a block of the list after its list step.
+  struct ListBlock {
+    int entries = 0;
+    PolyField<MonoAddress> vertex_place;
+    PolyField<MonoAddress> fold_place;
+    std::vector<LaneMask> needs_load;
+    LaneMask folded;
+    LaneMask flushed;
+    int loads = 0;
+  };
+
+  class ListStage : public Stage {
+   public:
+    ListStage(const StageContext& context, std::vector<ListBlock>& blocks) : Stage(context), blocks_(blocks) {}
+    void load(std::uint64_t step, int block) override;
+    void process(std::uint64_t step, int block) override;
+    void save(std::uint64_t, int) override {}
+
+   private:
+    std::vector<ListBlock>& blocks_;
+  };
+
+  /// Its "block" is list block * loads_per_path + load.
+  class FoldStage : public Stage {
+   public:
+    FoldStage(const StageContext& context, std::vector<ListBlock>& blocks);
+    void load(std::uint64_t step, int block) override;
+    void process(std::uint64_t step, int block) override;
+    void save(std::uint64_t step, int block) override;
+
+    void set_results(cn::MonoPointer<RadianceRecord> results) { results_ = results; }
+
+   private:
+    struct Loads {
+      PolyPointer<FinishedRecord> entry;
+      PolyPointer<FoldRecord> earlier;
+      PolyPointer<VertexRecord> vertices;
+    };
+    struct Saves {
+      PolyPointer<RadianceRecord> radiance;
+      PolyPointer<FoldRecord> flushed;
+    };
+    Loads loads(std::uint64_t step) const;
+    Saves saves(std::uint64_t step) const;
+    bool is_last(int block) const { return load_of(block) + 1 == list_block(block).loads; }
+    int load_of(int block) const { return block % loads_per_path_; }
+    int list_index(int block) const { return block / loads_per_path_; }
+    ListBlock& list_block(int block) const { return blocks_[std::size_t(list_index(block))]; }
+
+    std::vector<ListBlock>& blocks_;
+    int loads_per_path_;
+    cn::PolySpan sum_;
+    cn::MonoPointer<RadianceRecord> results_;
+  };
+
+  ListStage& list() { return list_; }
+  FoldStage& fold() { return fold_; }
+  const ListStage& list() const { return list_; }
+  const FoldStage& fold() const { return fold_; }
+
+  /// Starts on block `block` of the list, which has that many entries.
+  void begin_block(int block, int entries) { blocks_[std::size_t(block)].entries = entries; }
+  int loads(int block) const { return blocks_[std::size_t(block)].loads; }
+  int fold_block(int block, int load) const { return block * loads_per_path_ + load; }
+
+ private:
+  int loads_per_path_;
+  std::vector<ListBlock> blocks_;
+  ListStage list_;
+  FoldStage fold_;
+};
+
+}  // namespace path_tracer

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware/cn/machine.hpp"
+
+namespace path_tracer {
+
+/// n-buffering in one direction (paper, section 3.3): as many poly buffers as steps may be under way at once, taken in
+/// turn by step number, each with a semaphore that counts its finished transfers. Every bin uses the same ring, so that
+/// the last steps of a bin overlap with the first of the next.
+class TransferRing {
+ public:
+  TransferRing(cn::Machine& machine, const std::string& name, int buffers, int bytes_per_buffer);
+
+  cn::PolySpan buffer(std::uint64_t step) const { return entry(step).span; }
+
+  void copy_m2p(std::uint64_t step, int block, cn::PolySpan destination, const cn::MonoPlaces& source,
+                const cn::LaneMask& enabled);
+  void copy_p2m(std::uint64_t step, int block, const cn::MonoPlaces& destination, cn::PolySpan source,
+                const cn::LaneMask& enabled);
+
+  /// Until all transfers in the buffer that `step` uses are over, whichever step started them.
+  void wait(std::uint64_t step);
+
+  /// Until all transfers that were started for records of `block` are over.
+  void wait_block(int block);
+
+  /// Until all transfers of steps up to `step` are over.
+  void wait_until(std::uint64_t step);
+
+ private:
+  struct Entry {
+    cn::PolySpan span;
+    cn::Semaphore done;
+    std::uint64_t step = 0;
+    int block = -1;
+    int pending = 0;  ///< transfers started and not waited for
+  };
+
+  Entry& entry(std::uint64_t step) { return entries_[step % entries_.size()]; }
+  const Entry& entry(std::uint64_t step) const { return entries_[step % entries_.size()]; }
+  Entry& claim(std::uint64_t step, int block);
+  void wait(Entry& entry);
+
+  cn::Machine& machine_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace path_tracer

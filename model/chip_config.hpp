@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "firmware/cn/instruction.hpp"
+
+namespace model {
+
+enum class PioArbitration : std::uint8_t { strict_fifo, reads_overtake_writes, queue_per_direction };
+
+/// Every number of the chip. Defaults, units, meaning, range, confidence and source of each are in the parameter table
+/// (chip_parameters.hpp), which is the only place that knows the keys.
+struct ChipConfig {
+  std::string preset;
+
+  struct Chip {
+    double clock_hz;
+    int pes;
+  } chip;
+
+  struct Poly {
+    int sram_bytes;
+    double code_quality_factor;  ///< cycles of a kernel = this x (instructions . cost table)
+    std::array<double, cn::kInstructionClasses> cycles;  ///< by instruction class; `sram` is per 4-byte word
+  } poly;
+
+  struct Control {
+    int data_cache_bytes;
+    int instruction_cache_bytes;
+    int cache_line_bytes;
+    int cache_miss_cycles;  ///< in the control unit, on top of what the memory takes
+    int semaphore_cycles;   ///< a signal or an unblocked wait
+  } control;
+
+  struct Pio {
+    PioArbitration arbitration;
+    int queue_depth;
+    int setup_cycles;         ///< a request
+    int per_pe_cycles;        ///< a participating PE
+    int bytes_per_cycle;      ///< into or out of one PE
+    int misalignment_cycles;  ///< a PE whose mono address is not 8-byte aligned or whose piece crosses a packet
+    bool consolidate_equal_addresses;
+    int stolen_sram_cycles;  ///< SRAM port cycles taken for 8 bytes
+  } pio;
+
+  struct ClearConnect {
+    int bytes_per_cycle;
+    int packet_bytes;
+    int hop_cycles;
+    int hops_to_ddr;
+  } clear_connect;
+
+  struct Ddr {
+    std::uint64_t size_bytes;
+    int banks;
+    int page_bytes;
+    int bytes_per_cycle;
+    int page_hit_cycles;
+    int page_miss_cycles;
+    int turn_round_cycles;
+    int refresh_interval_cycles;  ///< 0: no refresh
+    int refresh_cycles;
+    int ecc_cycles;  ///< added to each access
+  } ddr;
+
+  struct Host {
+    double bytes_per_second;
+    int latency_cycles;  ///< of one host DMA
+  } host;
+};
+
+}  // namespace model

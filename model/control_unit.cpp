@@ -1,0 +1,239 @@
+#include "model/control_unit.hpp"
+
+#include <cstring>
+#include <numeric>
+
+#include "model/annotated_delay.hpp"
+
+namespace model {
+namespace {
+
+/// Firmware runs whole programs on this stack; SystemC's default of 256 KiB is for small processes.
+constexpr int kFirmwareStackBytes = 8 << 20;
+
+}  // namespace
+
+const char* cycle_cause_name(CycleCause cause) {
+  static constexpr std::array<const char*, kCycleCauses> kNames = {
+      "poly", "stolen", "mono", "data_cache", "semaphore", "wait_load", "wait_save", "wait_pio_queue", "wait_host"};
+  return kNames.at(std::size_t(cause));
+}
+
+Cycles ControlStatistics::total() const { return std::accumulate(cycles.begin(), cycles.end(), Cycles{0}); }
+
+Cycles ControlStatistics::exposed_pio() const {
+  return (*this)[CycleCause::wait_load] + (*this)[CycleCause::wait_save] + (*this)[CycleCause::wait_pio_queue];
+}
+
+ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+                         PeArray& pe_array)
+    : sc_module(name),
+      Machine(config.chip.pes, config.poly.sram_bytes),
+      config_(config),
+      clock_(clock),
+      pe_array_(pe_array),
+      data_cache_(config.control.data_cache_bytes, config.control.cache_line_bytes),
+      mono_window_(config.ddr.size_bytes, poly_memory()),
+      line_(std::size_t(config.control.cache_line_bytes)) {
+  semaphores.bind(*this);
+  SC_HAS_PROCESS(ControlUnit);
+  SC_THREAD(run);
+  set_stack_size(kFirmwareStackBytes);
+}
+
+void ControlUnit::start() { start_event_.notify(sc_core::SC_ZERO_TIME); }
+
+void ControlUnit::run() {
+  wait(start_event_);
+  now_ = clock_.cycle_at(sc_core::sc_time_stamp());
+  start_cycle_ = now_;
+  try {
+    if (firmware_) firmware_(*this);
+    synchronise();
+  } catch (const sc_core::sc_unwind_exception&) {
+    throw;  // the kernel ends this process
+  } catch (...) {
+    failure_ = std::current_exception();  // SystemC would make a report of it and lose its type
+  }
+  finished_ = true;
+  finished_event_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void ControlUnit::rethrow_failure() const {
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void ControlUnit::set_observer(ControlObserver* observer, Cycles sync_cycles) {
+  observer_ = observer;
+  sync_cycles_ = sync_cycles;
+}
+
+void ControlUnit::spend(CycleCause cause, Cycles cycles, int semaphore) {
+  if (cycles == 0) return;
+  statistics_.cycles[std::size_t(cause)] += cycles;
+  if (observer_ != nullptr) observer_->spent(cause, now_, now_ + cycles, semaphore);
+  now_ += cycles;
+}
+
+void ControlUnit::synchronise() {
+  pio->settle(now_);
+  const sc_core::sc_time target = clock_.time_at(now_);
+  if (target > sc_core::sc_time_stamp()) wait(target - sc_core::sc_time_stamp());
+}
+
+/// What was reported lies in the future of SystemC time; here it becomes the present, before too much piles up.
+void ControlUnit::synchronise_for_observer() {
+  if (observer_ == nullptr || now_ < next_sync_) return;
+  next_sync_ = now_ + sync_cycles_;
+  synchronise();
+}
+
+void ControlUnit::issue_mono(std::uint64_t instructions) {
+  if (!timed_) return;
+  statistics_.mono_instructions += instructions;
+  const double cycles = config_.poly.cycles[std::size_t(cn::InstructionClass::mono)] * double(instructions);
+  spend(CycleCause::mono, static_cast<Cycles>(cycles + 0.5));
+}
+
+void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
+  if (!timed_ || !issued.root().reached) return;
+  const PeArray::Cost cost = pe_array_.retire(kernel, issued);
+  const Cycles start = now_;
+  pio->settle(start);
+  const std::uint64_t words_before = pio->words_moved_before(start);
+  pio->settle(start + cost.cycles);
+  const std::uint64_t words = pio->words_moved_before(start + cost.cycles) - words_before;
+  spend(CycleCause::poly, cost.cycles);
+  spend(CycleCause::stolen, stolen_cycles(words, config_.pio.stolen_sram_cycles, cost.sram_cycles, cost.cycles));
+  if (observer_ != nullptr)
+    observer_->ran_kernel(kernel, start, now_, static_cast<int>(issued.root().enabled_lanes));
+  synchronise_for_observer();
+}
+
+void ControlUnit::start_transfer(const cn::Transfer& transfer) {
+  if (!timed_) {
+    mono_window_.check(transfer, 0);
+    mono_window_.move(transfer, *mono_socket.operator->());
+    return;
+  }
+  waits_for_save_[std::size_t(transfer.done.index)] = transfer.direction == cn::Direction::poly_to_mono;
+  const Cycles go_on = pio->enqueue(transfer, now_);
+  spend(CycleCause::wait_pio_queue, go_on - now_);
+}
+
+void ControlUnit::signal_at(int index, Cycles at) { semaphore_file_.signal(index, at); }
+
+void ControlUnit::sem_signal(cn::Semaphore semaphore) {
+  if (!timed_) {
+    if (untimed_service_) untimed_service_();
+    return;
+  }
+  spend(CycleCause::semaphore, Cycles(config_.control.semaphore_cycles), semaphore.index);
+  semaphore_file_.signal(semaphore.index, now_);
+  if (!shared_with_host_[std::size_t(semaphore.index)]) return;
+  synchronise();
+  host_event_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void ControlUnit::sem_wait(cn::Semaphore semaphore) {
+  if (!timed_) return;
+  spend(CycleCause::semaphore, Cycles(config_.control.semaphore_cycles), semaphore.index);
+  pio->settle(now_);
+  if (shared_with_host_[std::size_t(semaphore.index)]) {
+    wait_for_host(semaphore);
+  } else {
+    wait_for_signal(semaphore);
+  }
+  synchronise_for_observer();
+}
+
+void ControlUnit::wait_for_signal(cn::Semaphore semaphore) {
+  std::optional<Cycles> at = semaphore_file_.take(semaphore.index);
+  // Nobody can queue another request while this thread waits, so the engine may decide on and on.
+  while (!at && pio->serve_next()) at = semaphore_file_.take(semaphore.index);
+  if (!at)
+    throw cn::MachineFault("deadlock at cycle " + std::to_string(now_) + ": wait on semaphore '" +
+                           semaphore_name(semaphore) + "', which no outstanding transfer will signal");
+  const CycleCause cause =
+      waits_for_save_[std::size_t(semaphore.index)] ? CycleCause::wait_save : CycleCause::wait_load;
+  if (*at > now_) spend(cause, *at - now_, semaphore.index);
+}
+
+void ControlUnit::wait_for_host(cn::Semaphore semaphore) {
+  std::optional<Cycles> at = semaphore_file_.take(semaphore.index);
+  while (!at) {
+    synchronise();
+    wait(signalled_by_host_);
+    at = semaphore_file_.take(semaphore.index);
+  }
+  if (*at > now_) spend(CycleCause::wait_host, *at - now_, semaphore.index);
+}
+
+void ControlUnit::share_with_host(cn::Semaphore semaphore) {
+  shared_with_host_.at(std::size_t(semaphore.index)) = true;
+}
+
+bool ControlUnit::host_try_wait(cn::Semaphore semaphore) {
+  if (!semaphore_file_.has_signal(semaphore.index, clock_.cycle_at(sc_core::sc_time_stamp()))) return false;
+  semaphore_file_.take(semaphore.index);
+  return true;
+}
+
+void ControlUnit::host_signal(cn::Semaphore semaphore) {
+  semaphore_file_.signal(semaphore.index, clock_.cycle_at(sc_core::sc_time_stamp()));
+  signalled_by_host_.notify(sc_core::SC_ZERO_TIME);
+}
+
+const void* ControlUnit::read_mono_bytes(cn::MonoAddress from, std::size_t bytes) {
+  const void* const data = mono_window_.view(from, bytes, *mono_socket.operator->());
+  if (!timed_) return data;
+  const std::uint64_t last = data_cache_.line_of(from + bytes - 1);
+  for (std::uint64_t line = data_cache_.line_of(from); line <= last; ++line) {
+    if (data_cache_.touch(line)) {
+      ++statistics_.data_cache_hits;
+    } else {
+      ++statistics_.data_cache_misses;
+      fetch_line(line * data_cache_.line_bytes());
+    }
+  }
+  return data;
+}
+
+void ControlUnit::fetch_line(cn::MonoAddress line) {
+  pio->settle(now_);
+  transaction_.set_command(tlm::TLM_READ_COMMAND);
+  send(line, line_.data(), line_.size());
+}
+
+/// Write-through, and the control unit waits until the memory has it: what it tells the host must be there before the
+/// signal is.
+void ControlUnit::write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) {
+  if (!timed_) {
+    mono_window_.write(to, bytes, size, *mono_socket.operator->());
+    return;
+  }
+  issue_mono(1);
+  pio->settle(now_);
+  std::vector<std::uint8_t> data(size);
+  std::memcpy(data.data(), bytes, size);
+  transaction_.set_command(tlm::TLM_WRITE_COMMAND);
+  send(to, data.data(), size);
+}
+
+void ControlUnit::send(cn::MonoAddress address, std::uint8_t* data, std::size_t size) {
+  transaction_.set_address(address);
+  transaction_.set_data_ptr(data);
+  transaction_.set_data_length(static_cast<unsigned>(size));
+  transaction_.set_streaming_width(static_cast<unsigned>(size));
+  transaction_.set_byte_enable_ptr(nullptr);
+  transaction_.set_dmi_allowed(false);
+  transaction_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+  sc_core::sc_time delay = delay_until(clock_, now_);
+  mono_socket->b_transport(transaction_, delay);
+  if (transaction_.is_response_error())
+    throw cn::MachineFault("mono access of " + std::to_string(size) + " bytes at " + std::to_string(address) + ": " +
+                           transaction_.get_response_string());
+  spend(CycleCause::data_cache, cycle_of_delay(clock_, delay) - now_ + Cycles(config_.control.cache_miss_cycles));
+}
+
+}  // namespace model

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <tlm_utils/simple_initiator_socket.h>
+#include <array>
+#include <exception>
+#include <functional>
+#include <systemc>
+#include <tlm>
+
+#include "firmware/cn/machine.hpp"
+#include "model/chip_config.hpp"
+#include "model/clock_domain.hpp"
+#include "model/control_observer.hpp"
+#include "model/data_cache.hpp"
+#include "model/mono_window.hpp"
+#include "model/pe_array.hpp"
+#include "model/pio_port.hpp"
+#include "model/semaphore_file.hpp"
+#include "model/stolen_cycles.hpp"
+
+namespace model {
+
+struct ControlStatistics {
+  std::array<Cycles, kCycleCauses> cycles{};  ///< by cause; the sum is the run
+  std::uint64_t mono_instructions = 0;
+  std::uint64_t data_cache_hits = 0;
+  std::uint64_t data_cache_misses = 0;
+
+  Cycles operator[](CycleCause cause) const { return cycles[std::size_t(cause)]; }
+  Cycles total() const;
+  /// Cycles in which the control unit did nothing but wait for programmed I/O.
+  Cycles exposed_pio() const;
+};
+
+/// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on SystemC's only
+/// firmware process and runs ahead by a local cycle count; it synchronises with SystemC time where the host
+/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it.
+class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort {
+ public:
+  sc_core::sc_port<PioPort> pio{"pio"};
+  sc_core::sc_export<SemaphorePort> semaphores{"semaphores"};
+  tlm_utils::simple_initiator_socket<ControlUnit> mono_socket{"mono_socket"};
+
+  using Firmware = std::function<void(cn::Machine&)>;
+
+  ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock, PeArray& pe_array);
+
+  /// What runs from `start()` on.
+  void load(Firmware firmware) { firmware_ = std::move(firmware); }
+  /// Called by the host: the firmware begins at the present SystemC time.
+  void start();
+  bool finished() const { return finished_; }
+  /// What the firmware threw, if it did.
+  void rethrow_failure() const;
+  const sc_core::sc_event& finished_event() const { return finished_event_; }
+
+  /// Semaphores that the host shares: the firmware's signals reach `host_event`, the host signals with host_signal().
+  void share_with_host(cn::Semaphore semaphore);
+  const sc_core::sc_event& host_event() const { return host_event_; }
+  /// Takes one signal that the firmware has given by now; false when there is none.
+  bool host_try_wait(cn::Semaphore semaphore);
+  void host_signal(cn::Semaphore semaphore);
+  /// What the host does for work that takes no time: runs at once when the firmware signals it outside timed code.
+  void on_untimed_signal(std::function<void()> service) { untimed_service_ = std::move(service); }
+
+  /// The firmware's cycle, at or ahead of SystemC's time.
+  Cycles now() const { return now_; }
+  /// When the firmware began.
+  Cycles start_cycle() const { return start_cycle_; }
+  const ControlStatistics& statistics() const { return statistics_; }
+
+  /// Reports spans to `observer`; synchronises at least every `sync_cycles` so that they can be shown in time.
+  void set_observer(ControlObserver* observer, Cycles sync_cycles);
+
+  void sem_signal(cn::Semaphore semaphore) override;
+  void sem_wait(cn::Semaphore semaphore) override;
+  void issue_mono(std::uint64_t instructions) override;
+  void timed(bool on) override { timed_ = on; }
+
+  void signal_at(int index, Cycles at) override;
+
+ protected:
+  void retire(const char* kernel, const cn::IssueTree& issued) override;
+  void start_transfer(const cn::Transfer& transfer) override;
+  const void* read_mono_bytes(cn::MonoAddress from, std::size_t bytes) override;
+  void write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) override;
+
+ private:
+  void run();
+  void spend(CycleCause cause, Cycles cycles, int semaphore = -1);
+  void wait_for_signal(cn::Semaphore semaphore);
+  void wait_for_host(cn::Semaphore semaphore);
+  void synchronise();
+  void synchronise_for_observer();
+  void fetch_line(cn::MonoAddress line);
+  void send(cn::MonoAddress address, std::uint8_t* data, std::size_t size);
+
+  const ChipConfig& config_;
+  ClockDomain clock_;
+  PeArray& pe_array_;
+  SemaphoreFile semaphore_file_;
+  DataCache data_cache_;
+  MonoWindow mono_window_;
+  tlm::tlm_generic_payload transaction_;
+  std::vector<std::uint8_t> line_;
+  std::array<bool, kSemaphores> waits_for_save_{};  ///< direction of the latest transfer that signals it
+  std::array<bool, kSemaphores> shared_with_host_{};
+
+  Firmware firmware_;
+  std::function<void()> untimed_service_;
+  Cycles now_ = 0;
+  Cycles start_cycle_ = 0;
+  bool timed_ = true;
+  bool finished_ = false;
+  std::exception_ptr failure_;
+  sc_core::sc_event start_event_;
+  sc_core::sc_event finished_event_;
+  sc_core::sc_event host_event_;
+  sc_core::sc_event signalled_by_host_;
+
+  ControlObserver* observer_ = nullptr;
+  Cycles sync_cycles_ = 0;
+  Cycles next_sync_ = 0;
+  ControlStatistics statistics_;
+};
+
+}  // namespace model

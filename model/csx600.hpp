@@ -1,0 +1,44 @@
+#pragma once
+
+#include <systemc>
+
+#include "model/chip_config.hpp"
+#include "model/clear_connect.hpp"
+#include "model/clock_domain.hpp"
+#include "model/control_unit.hpp"
+#include "model/dma_engine.hpp"
+#include "model/host_link.hpp"
+#include "model/mono_ddr.hpp"
+#include "model/pe_array.hpp"
+#include "model/poly_sram.hpp"
+
+namespace model {
+
+/// One ClearSpeed CSX600 with its DDR2 and its link to the host.
+///
+///   control_unit --port--> dma_engine --+
+///        |                     |        +--> clear_connect --> mono_ddr
+///     pe_array <-- poly_sram <-+        |
+///        control_unit (data cache) -----+
+///        host_link ---------------------+
+class Csx600 : public sc_core::sc_module {
+ public:
+  Csx600(const sc_core::sc_module_name& name, const ChipConfig& config);
+
+ private:
+  ChipConfig config_;
+
+ public:
+  const ClockDomain clock;
+  PeArray pe_array;
+  ControlUnit control_unit;
+  PolySram poly_sram;
+  DmaEngine dma_engine;
+  ClearConnect clear_connect;
+  MonoDdr mono_ddr;
+  HostLink host_link;
+
+  const ChipConfig& config() const { return config_; }
+};
+
+}  // namespace model

@@ -1,0 +1,93 @@
+#include "model/mono_ddr.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "model/annotated_delay.hpp"
+
+namespace model {
+
+MonoDdr::MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock)
+    : sc_module(name),
+      clock_(clock),
+      timing_(config.ddr),
+      memory_(config.ddr.size_bytes),
+      dmi_latency_cycles_(Cycles(config.ddr.page_hit_cycles)) {
+  socket.register_b_transport(this, &MonoDdr::b_transport);
+  socket.register_transport_dbg(this, &MonoDdr::transport_dbg);
+  socket.register_get_direct_mem_ptr(this, &MonoDdr::get_direct_mem_ptr);
+}
+
+void MonoDdr::b_transport(tlm::tlm_generic_payload& transaction, sc_core::sc_time& delay) {
+  transaction.set_dmi_allowed(true);
+  if (!transaction.is_read() && !transaction.is_write()) {
+    PeAddresses* const addresses = transaction.get_extension<PeAddresses>();
+    transaction.set_response_status(addresses == nullptr ? tlm::TLM_OK_RESPONSE : serve(*addresses, delay));
+    return;
+  }
+  transaction.set_response_status(access_plainly(transaction, delay));
+}
+
+tlm::tlm_response_status MonoDdr::access_plainly(const tlm::tlm_generic_payload& transaction,
+                                                 sc_core::sc_time& delay) {
+  const std::uint64_t address = transaction.get_address();
+  const std::uint64_t bytes = transaction.get_data_length();
+  if (!contains(address, bytes)) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  if (transaction.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
+  if (transaction.get_streaming_width() < bytes) return tlm::TLM_BURST_ERROR_RESPONSE;
+  if (transaction.is_write()) {
+    std::memcpy(memory_.data() + address, transaction.get_data_ptr(), bytes);
+  } else {
+    std::memcpy(transaction.get_data_ptr(), memory_.data() + address, bytes);
+  }
+  const auto access = timing_.access(address, bytes, transaction.is_write(), cycle_of_delay(clock_, delay));
+  delay = delay_until(clock_, access.finish);
+  return tlm::TLM_OK_RESPONSE;
+}
+
+tlm::tlm_response_status MonoDdr::serve(PeAddresses& addresses, sc_core::sc_time& delay) {
+  const MonoPieces& pieces = addresses.pieces;
+  addresses.served = true;
+  addresses.first_data = delay;
+  for (const MonoPieces::Run& run : pieces.runs())
+    if (!contains(run.address, run.bytes)) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  if (pieces.runs().empty()) return tlm::TLM_OK_RESPONSE;
+  const Cycles arrival = cycle_of_delay(clock_, delay);
+  const MonoPieces::Run& first = pieces.runs().front();
+  const DdrTiming::Access access = timing_.access(first.address, first.bytes, pieces.write(), arrival);
+  Cycles finish = access.finish;
+  for (std::size_t i = 1; i < pieces.runs().size(); ++i)
+    finish = timing_.access(pieces.runs()[i].address, pieces.runs()[i].bytes, pieces.write(), arrival).finish;
+  addresses.first_data = delay_until(clock_, access.start);
+  delay = delay_until(clock_, finish);
+  return tlm::TLM_OK_RESPONSE;
+}
+
+unsigned int MonoDdr::transport_dbg(tlm::tlm_generic_payload& transaction) {
+  const std::uint64_t address = transaction.get_address();
+  if (address >= memory_.size_bytes()) return 0;
+  const auto bytes = static_cast<unsigned int>(
+      std::min<std::uint64_t>(transaction.get_data_length(), memory_.size_bytes() - address));
+  if (transaction.is_write()) {
+    std::memcpy(memory_.data() + address, transaction.get_data_ptr(), bytes);
+  } else if (transaction.is_read()) {
+    std::memcpy(transaction.get_data_ptr(), memory_.data() + address, bytes);
+  } else {
+    return 0;
+  }
+  return bytes;
+}
+
+bool MonoDdr::get_direct_mem_ptr(tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi) {
+  dmi.init();
+  dmi.set_start_address(0);
+  dmi.set_end_address(memory_.size_bytes() - 1);
+  if (transaction.get_address() >= memory_.size_bytes()) return false;
+  dmi.set_dmi_ptr(memory_.data());
+  dmi.set_read_latency(clock_.time_at(dmi_latency_cycles_));
+  dmi.set_write_latency(clock_.time_at(dmi_latency_cycles_));
+  dmi.allow_read_write();
+  return true;
+}
+
+}  // namespace model

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <tlm_utils/simple_target_socket.h>
+#include <systemc>
+#include <tlm>
+
+#include "model/chip_config.hpp"
+#include "model/clock_domain.hpp"
+#include "model/ddr_timing.hpp"
+#include "model/lazy_memory.hpp"
+#include "model/pe_addresses.hpp"
+
+namespace model {
+
+/// Mono memory: DDR2 behind one TLM-2.0 target socket. Reads and writes of any length; no byte enables, no
+/// streaming. The delay in is the arrival of the access, the delay out the cycle after its last byte
+/// (DdrTiming).
+///
+/// A transaction with PeAddresses costs exactly what one transaction a run would, all sent with the same
+/// delay: the runs are booked one after the other from one arrival. The delay out is the end of the last.
+class MonoDdr : public sc_core::sc_module {
+ public:
+  tlm_utils::simple_target_socket<MonoDdr> socket{"socket"};
+
+  MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock);
+
+  const DdrStatistics& statistics() const { return timing_.statistics(); }
+  LazyMemory& memory() { return memory_; }
+
+ private:
+  void b_transport(tlm::tlm_generic_payload& transaction, sc_core::sc_time& delay);
+  unsigned int transport_dbg(tlm::tlm_generic_payload& transaction);
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi);
+
+  tlm::tlm_response_status access_plainly(const tlm::tlm_generic_payload& transaction,
+                                          sc_core::sc_time& delay);
+  tlm::tlm_response_status serve(PeAddresses& addresses, sc_core::sc_time& delay);
+  bool contains(std::uint64_t address, std::uint64_t bytes) const {
+    return address <= memory_.size_bytes() && bytes <= memory_.size_bytes() - address;
+  }
+
+  ClockDomain clock_;
+  DdrTiming timing_;
+  LazyMemory memory_;
+  Cycles dmi_latency_cycles_;
+};
+
+}  // namespace model

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/cn/transfer.hpp"
+#include "model/divisor.hpp"
+
+namespace model {
+
+/// What one PIO request asks of mono memory: a piece of the same size for each PE that takes part, in
+/// ascending PE order, and the runs they form. A run is as many neighbouring pieces as lie one behind the
+/// other; a request of an array without gaps is one run. Addresses are copied, and the memory for them is
+/// kept from one request to the next.
+class MonoPieces {
+ public:
+  struct Run {
+    Run(cn::MonoAddress run_address, std::uint64_t run_bytes) : address(run_address), bytes(run_bytes) {}
+    cn::MonoAddress address;
+    std::uint64_t bytes;
+  };
+  struct Rules {
+    Divisor packet_bytes;
+    /// Equal addresses of a read are fetched once, for the lowest PE that has them, and broadcast (US
+    /// 7,363,472). Writes never are: each PE has its own data.
+    bool consolidate_equal_addresses;
+  };
+
+  MonoPieces() = default;
+
+  void describe(const cn::Transfer& transfer, int num_pes, const Rules& rules);
+
+  cn::Direction direction() const { return direction_; }
+  bool write() const { return direction_ == cn::Direction::poly_to_mono; }
+  /// Of all PEs, whether they take part or not.
+  cn::MonoPlaces places() const {
+    return by_pe_.empty() ? cn::MonoPlaces::array(first_, stride_bytes_)
+                          : cn::MonoPlaces::each(by_pe_.data(), first_);
+  }
+  const cn::LaneMask& enabled() const { return enabled_; }
+  int bytes_per_pe() const { return bytes_per_pe_; }
+
+  int pes() const { return pes_; }        ///< that take part
+  int pieces() const { return pieces_; }  ///< that are addressed: `pes` less the consolidated ones
+  int misaligned() const {
+    return misaligned_;
+  }  ///< pieces off an 8-byte boundary or across a packet boundary
+  std::uint64_t poly_bytes() const { return std::uint64_t(pes_) * std::uint64_t(bytes_per_pe_); }
+  std::uint64_t mono_bytes() const { return std::uint64_t(pieces_) * std::uint64_t(bytes_per_pe_); }
+  std::uint64_t packets() const { return packets_; }  ///< each run is cut into packets from its start
+  const std::vector<Run>& runs() const { return runs_; }
+
+ private:
+  class SeenAddresses {
+   public:
+    void clear();
+    /// True the first time.
+    bool insert(cn::MonoAddress address);
+
+   private:
+    static constexpr std::size_t kSlots = 2 * cn::kMaxPes;
+    struct Slot {
+      cn::MonoAddress address = 0;
+      std::uint64_t generation = 0;
+    };
+    std::vector<Slot> slots_;
+    std::uint64_t generation_ = 0;
+  };
+
+  bool describe_gapless_array(int num_pes, const Rules& rules);
+  void describe_each(int num_pes, const Rules& rules);
+
+  cn::Direction direction_ = cn::Direction::mono_to_poly;
+  cn::MonoAddress first_ = 0;
+  std::uint64_t stride_bytes_ = 0;
+  std::vector<cn::MonoAddress> by_pe_;
+  cn::LaneMask enabled_;
+  int bytes_per_pe_ = 0;
+  int pes_ = 0;
+  int pieces_ = 0;
+  int misaligned_ = 0;
+  std::uint64_t packets_ = 0;
+  std::vector<Run> runs_;
+  SeenAddresses seen_;
+};
+
+}  // namespace model

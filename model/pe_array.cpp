@@ -1,0 +1,69 @@
+#include "model/pe_array.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace model {
+namespace {
+
+constexpr auto kMono = std::size_t(cn::InstructionClass::mono);
+constexpr auto kSram = std::size_t(cn::InstructionClass::sram);
+
+}  // namespace
+
+PeArray::PeArray(const sc_core::sc_module_name& name, const ChipConfig& config)
+    : sc_module(name),
+      num_pes_(config.chip.pes),
+      code_quality_factor_(config.poly.code_quality_factor),
+      cycles_(config.poly.cycles) {}
+
+double PeArray::poly_cycles(const cn::IssueCounts& counts) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < kMono; ++i) sum += double(counts.by_class[i]) * cycles_[i];
+  return sum;
+}
+
+PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
+  KernelStatistics& statistics = entry(kernel);
+  cn::IssueCounts counts;
+  double issue_cycles = 0;
+  issued.for_each_node([&](const cn::IssueTree::Node& node) {
+    const double node_cycles = poly_cycles(node.counts);
+    counts += node.counts;
+    issue_cycles += node_cycles;
+    statistics.enabled_lane_cycles += node_cycles * double(node.enabled_lanes);
+  });
+  const double poly = issue_cycles * code_quality_factor_;
+  const double mono = double(counts.by_class[kMono]) * cycles_[kMono];
+  const double sram = double(counts.by_class[kSram]) * cycles_[kSram] * code_quality_factor_;
+  const Cost cost{static_cast<Cycles>(std::llround(std::max(poly, mono))), static_cast<Cycles>(std::llround(sram))};
+  ++statistics.runs;
+  statistics.cycles += cost.cycles;
+  statistics.issued += counts;
+  statistics.issue_cycles += issue_cycles;
+  return cost;
+}
+
+KernelStatistics& PeArray::entry(const char* kernel) {
+  const auto found = std::find(names_.begin(), names_.end(), kernel);
+  if (found != names_.end()) return kernels_[std::size_t(found - names_.begin())];
+  names_.push_back(kernel);
+  kernels_.push_back({});
+  kernels_.back().name = kernel;
+  return kernels_.back();
+}
+
+KernelStatistics PeArray::total() const {
+  KernelStatistics sum;
+  sum.name = "total";
+  for (const KernelStatistics& kernel : kernels_) {
+    sum.runs += kernel.runs;
+    sum.cycles += kernel.cycles;
+    sum.issued += kernel.issued;
+    sum.issue_cycles += kernel.issue_cycles;
+    sum.enabled_lane_cycles += kernel.enabled_lane_cycles;
+  }
+  return sum;
+}
+
+}  // namespace model

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "firmware/cn/instruction.hpp"
+#include "model/chip_config.hpp"
+#include "model/cycles.hpp"
+
+namespace model {
+
+struct KernelStatistics {
+  std::string name;
+  std::uint64_t runs = 0;
+  Cycles cycles = 0;
+  cn::IssueCounts issued;
+  double issue_cycles = 0;         ///< before the code quality factor
+  double enabled_lane_cycles = 0;  ///< the same, each weighted by the PEs enabled
+
+  /// Share of the issued lane-cycles in which a PE was enabled. Counts PEs as the kernel, its loops and its
+  /// any-branches were entered; the branches of a plain poly if are not told apart.
+  double simd_efficiency(int num_pes) const {
+    return issue_cycles > 0 ? enabled_lane_cycles / (issue_cycles * num_pes) : 1.0;
+  }
+};
+
+/// The PEs as a cost: they run in lock step, so a kernel takes what its instructions take, whatever the data. The
+/// lanes' values are computed by the firmware's own code (firmware/cn).
+class PeArray : public sc_core::sc_module {
+ public:
+  PeArray(const sc_core::sc_module_name& name, const ChipConfig& config);
+
+  struct Cost {
+    Cycles cycles = 0;       ///< the kernel alone
+    Cycles sram_cycles = 0;  ///< of these, with an access to SRAM
+  };
+
+  /// Books a kernel and returns what it takes. Mono instructions go on beside poly ones through the issue queue; the
+  /// longer stream counts.
+  Cost retire(const char* kernel, const cn::IssueTree& issued);
+
+  const std::vector<KernelStatistics>& kernels() const { return kernels_; }
+  KernelStatistics total() const;
+  int num_pes() const { return num_pes_; }
+
+ private:
+  KernelStatistics& entry(const char* kernel);
+  double poly_cycles(const cn::IssueCounts& counts) const;
+
+  int num_pes_;
+  double code_quality_factor_;
+  std::array<double, cn::kInstructionClasses> cycles_;
+  std::vector<const char*> names_;  // string literals: compared by address
+  std::vector<KernelStatistics> kernels_;
+};
+
+}  // namespace model

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "firmware/cn/transfer.hpp"
+#include "model/chip_config.hpp"
+#include "model/cycles.hpp"
+#include "model/mono_pieces.hpp"
+
+namespace model {
+
+/// What a request costs in the PIO engine.
+///
+/// The engine spends setup_cycles on a request, then takes its PEs one by one: per_pe_cycles to read and send
+/// a PE's address, then its data at bytes_per_cycle, plus misalignment_cycles where they apply. This PE side
+/// is never shared between two PEs. The memory side runs beside it:
+/// - Read: the first address leaves after setup and one address phase; the engine goes on to later addresses
+/// while it
+///   waits (transaction ids, US 7,363,472), so memory latency hides behind PE work. Data cannot be written to
+///   a PE before they have arrived: the request ends with the PE side, or one data phase after the memory's
+///   last byte has arrived, whichever is later. A read of one PE thus pays the whole latency.
+/// - Write: posted. The memory side starts when the first PE's data are there. The request ends with the PE
+/// side unless
+///   the memory takes data more slowly; then it pushes back and the request ends when it has taken the last
+///   byte. Data in flight are not waited for: a later access through the same path cannot overtake them.
+class PioTiming {
+ public:
+  explicit PioTiming(const ChipConfig::Pio& config);
+
+  Cycles setup_cycles() const { return setup_cycles_; }
+  /// The PE side of all pieces, without setup.
+  Cycles pe_cycles(const MonoPieces& pieces) const;
+  /// When the memory side of a request that starts at `start` begins.
+  Cycles memory_start(const MonoPieces& pieces, Cycles start) const;
+  /// @param memory_end the last byte has arrived at the engine (read) or at the memory (write)
+  Cycles finish(const MonoPieces& pieces, Cycles start, Cycles memory_end) const;
+
+ private:
+  Cycles data_cycles(const MonoPieces& pieces) const;
+
+  Cycles setup_cycles_;
+  Cycles per_pe_cycles_;
+  std::uint64_t bytes_per_cycle_;
+  Cycles misalignment_cycles_;
+};
+
+}  // namespace model

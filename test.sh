@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs the tests. Arguments go to ctest: ./test.sh -R film
+set -euo pipefail
+cd "$(dirname "$0")"
+source cmake/build.sh
+
+prepare_build release
+ctest --preset release --parallel "$(nproc)" "$@"

@@ -1,0 +1,183 @@
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/command_options.hpp"
+#include "testbench/commands/commands.hpp"
+#include "testbench/error.hpp"
+#include "testbench/image_file.hpp"
+#include "testbench/interrupt.hpp"
+#include "testbench/progress_bar.hpp"
+#include "testbench/render_report.hpp"
+#include "testbench/scene/scene_file.hpp"
+
+namespace testbench {
+namespace {
+
+constexpr int kMaxFilmSide = 16384;
+
+struct RenderCommand {
+  std::string scene;
+  std::string size;
+  RenderOptions options;
+  ChipOptions chip;
+  LevelOption level;
+  std::string buffer = "both";
+  bool native = false;
+  std::string exr;
+  std::string png;
+  std::string statistics;
+  std::string vcd;
+  std::string vcd_cycles;
+
+  void run();
+
+ private:
+  void require_writable_outputs() const;
+  RenderRequest make_request() const;
+  Scene load() const;
+  void write_outputs(const RenderRequest& request, const RenderResult& result) const;
+};
+
+/// "480x480".
+FilmSize parse_size(const std::string& text) {
+  FilmSize size;
+  char end = 0;
+  const bool two_numbers = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &end) == 2;
+  const auto allowed = [](int side) { return side >= 1 && side <= kMaxFilmSide; };
+  if (!two_numbers || !allowed(size.width) || !allowed(size.height))
+    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " + std::to_string(kMaxFilmSide));
+  return size;
+}
+
+/// "first:last", either may be missing.
+void parse_cycles(const std::string& text, WaveOptions& waves) {
+  const std::size_t colon = text.find(':');
+  const auto number = [&](const std::string& part, std::uint64_t missing) {
+    if (part.empty()) return missing;
+    std::size_t used = 0;
+    std::uint64_t value = 0;
+    try {
+      value = std::stoull(part, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (used != part.size() || part[0] == '-') throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
+    return value;
+  };
+  if (colon == std::string::npos) throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
+  waves.first_cycle = number(text.substr(0, colon), 0);
+  waves.last_cycle = number(text.substr(colon + 1), waves.last_cycle);
+  if (waves.first_cycle >= waves.last_cycle)
+    throw InputError("--vcd-cycles: found '" + text + "', allowed is a first cycle below the last");
+}
+
+void RenderCommand::require_writable_outputs() const {
+  for (const std::string& path : {exr, png, statistics, vcd})
+    if (!path.empty()) require_writable(path);
+}
+
+RenderRequest RenderCommand::make_request() const {
+  RenderRequest request{scene, options, native};
+  request.options.chip = chip.chip();
+  request.options.level = level.level();
+  request.options.program.buffer_loads = buffer == "both" || buffer == "loads";
+  request.options.program.buffer_saves = buffer == "both" || buffer == "saves";
+  if (!vcd.empty()) {
+    if (native) throw InputError("--vcd: a native run has no clock and so no waves; leave out --native");
+    WaveOptions waves;
+    waves.vcd = vcd;
+    if (!vcd_cycles.empty()) parse_cycles(vcd_cycles, waves);
+    request.options.waves = waves;
+  } else if (!vcd_cycles.empty()) {
+    throw InputError("--vcd-cycles: found without --vcd, allowed is together with it");
+  }
+  return request;
+}
+
+Scene RenderCommand::load() const {
+  std::optional<FilmSize> film;
+  if (!size.empty()) film = parse_size(size);
+  Scene loaded = load_scene(scene);
+  if (film) loaded.film = *film;
+  if (loaded.degenerate_triangles > 0)
+    std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", scene.c_str(),
+                 std::size_t(loaded.degenerate_triangles));
+  return loaded;
+}
+
+void RenderCommand::write_outputs(const RenderRequest& request, const RenderResult& result) const {
+  if (!exr.empty()) write_exr(exr, result.film, render_provenance(request, result));
+  if (!png.empty()) write_png(png, result.film);
+  if (!statistics.empty()) write_bytes_atomically(statistics, render_statistics(request, result).dump(2) + "\n");
+}
+
+void RenderCommand::run() {
+  const RenderRequest request = make_request();
+  require_writable_outputs();
+  const Scene loaded = load();
+  const InterruptGuard interrupt;
+  const RenderResult result = [&] {
+    ProgressBar bar(native ? "render (native)" : "render");
+    const auto progress = [&](double share) {
+      bar.show(share);
+      return !interrupt.requested();
+    };
+    return native ? render_natively(loaded, request.options, progress)
+                  : render_on_chip(loaded, request.options, progress);
+  }();
+  write_outputs(request, result);
+  std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
+              loaded.film.width, loaded.film.height, request.options.work.samples,
+              render_statistics(request, result)["firmware"]["program"].get<std::string>().c_str(),
+              request.options.program.n, buffer.c_str(), native ? "native" : request.options.chip.preset.c_str());
+  std::fputs(render_table(request, result).c_str(), stdout);
+  if (exr.empty() && png.empty()) std::puts("  no image written: name one with --exr or --png");
+}
+
+void add_firmware_options(CLI::App& command, RenderCommand& state) {
+  using path_tracer::Program;
+  path_tracer::ProgramConfig& program = state.options.program;
+  const std::map<std::string, Program> programs = {
+      {"segments", Program::segments}, {"direct", Program::direct}, {"full", Program::full}};
+  command.add_option("--program", program.program, "What is timed: segments, direct or full")
+      ->transform(CLI::CheckedTransformer(programs))
+      ->default_str("full");
+  command.add_option("--n", program.n, "Blocks loaded ahead and saved behind, 0 to 8")->capture_default_str();
+  command.add_option("--buffer", state.buffer, "What is n-buffered: loads, saves, both or none")
+      ->check(CLI::IsMember({"loads", "saves", "both", "none"}))
+      ->capture_default_str();
+  command.add_option("--bin-blocks", program.bin_blocks, "Length of each bin in blocks of one SIMD width")
+      ->capture_default_str();
+  command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")->capture_default_str();
+  command.add_option("--roulette-start", program.roulette_start, "Segments that a path lives without Russian roulette")
+      ->capture_default_str();
+  command.add_option("--seed", program.seed, "Seed of the random numbers")->capture_default_str();
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("render", "Render a scene with the firmware on the chip");
+  const auto state = std::make_shared<RenderCommand>();
+  state->options.work.samples = 16;
+  command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
+  command.add_option("--samples", state->options.work.samples, "Paths a pixel")
+      ->check(CLI::Range(1, 1 << 30))
+      ->capture_default_str();
+  command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
+  add_firmware_options(command, *state);
+  state->chip.add_to(command, "csx600");
+  state->level.add_to(command);
+  command.add_flag("--native", state->native, "Run the firmware without SystemC: same image, no time");
+  command.add_option("--exr", state->exr, "Write the image as OpenEXR");
+  command.add_option("--png", state->png, "Write the image as PNG");
+  command.add_option("--stats,--json", state->statistics, "Write statistics as JSON");
+  command.add_option("--vcd", state->vcd, "Write waves (.vcd) and a GTKWave view beside them (.gtkw)");
+  command.add_option("--vcd-cycles", state->vcd_cycles, "Cycles to show as waves, FIRST:LAST (default: all)");
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

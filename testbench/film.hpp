@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "testbench/scene/scene.hpp"
+
+namespace testbench {
+
+/// Samples a film refused, by cause (the first that applies, in this order).
+struct RejectedSamples {
+  std::uint64_t not_finite = 0;
+  std::uint64_t negative = 0;
+  std::uint64_t too_large =
+      0;  ///< a channel above Film::max_radiance(), or a pixel already holds Film::kMaxSamples
+};
+
+/// Sums radiance samples such that the result does not depend on their order, nor on how they were split over
+/// films that are merged later: every sum is exact integer arithmetic. Pixels count row by row from the top
+/// left.
+///
+/// Number format: a channel's sum is a multiple of scale * 2^-74, its sum of squares a multiple of scale^2 *
+/// 2^-54; a sample's bits below that are cut off. Both hold 2^32 samples of 2^20 * scale (126 bits) without
+/// overflow. One film belongs to one thread; merge() joins them.
+class Film {
+ public:
+  static constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 32;
+
+  /// `scale` is a power of two near the scene's largest emission, 2^-40 .. 2^40 (see film_scale()).
+  /// Throws std::invalid_argument for any other scale or an empty size.
+  Film(FilmSize size, double scale);
+
+  /// Adds a sample of linear RGB radiance. Returns false, and counts the sample in rejected() instead, if a
+  /// channel is not finite, negative or above max_radiance(). `pixel` must be in [0, pixel_count())
+  /// (std::out_of_range).
+  bool add(int pixel, const glm::dvec3& radiance);
+
+  /// Adds all samples of a film of the same size and scale (else std::invalid_argument). Throws
+  /// std::overflow_error, with this film unchanged, if a pixel would hold more than kMaxSamples.
+  void merge(const Film& other);
+
+  FilmSize size() const { return size_; }
+  int pixel_count() const { return size_.width * size_.height; }
+  double scale() const { return scale_; }
+  double max_radiance() const { return max_radiance_; }
+
+  std::uint64_t sample_count(int pixel) const { return at(pixel).samples; }
+  /// Mean radiance; 0 for a pixel without samples.
+  glm::dvec3 mean(int pixel) const;
+  /// Unbiased estimate of the variance of mean(): sample variance / samples. 0 with fewer than two samples.
+  glm::dvec3 variance_of_mean(int pixel) const;
+
+  const RejectedSamples& rejected() const { return rejected_; }
+  std::uint64_t rejected_samples() const;
+
+  /// Means, 3 * pixel_count() values: R, G, B of each pixel, row by row, the top row first.
+  std::vector<double> rgb() const;
+  /// SHA-256 (64 hexadecimal digits) over the little-endian IEEE-754 bits of rgb().
+  std::string sha256() const;
+
+ private:
+  // ISO C++17 has no 128-bit integer; __extension__ keeps -Wpedantic quiet about the compiler's own.
+  __extension__ typedef unsigned __int128 UInt128;
+
+  struct Pixel {
+    UInt128 sum[3] = {0, 0, 0};
+    UInt128 sum_of_squares[3] = {0, 0, 0};
+    std::uint64_t samples = 0;
+  };
+
+  static UInt128 to_fixed_point(double value, double units);
+  const Pixel& at(int pixel) const { return pixels_.at(static_cast<std::size_t>(pixel)); }
+  void reject(const glm::dvec3& radiance);
+
+  FilmSize size_;
+  double scale_;
+  double max_radiance_;
+  int sum_quantum_exponent_;     ///< a unit of Pixel::sum is 2^this
+  int square_quantum_exponent_;  ///< a unit of Pixel::sum_of_squares is 2^this
+  double sum_units_;             ///< 2^-63 / unit of Pixel::sum
+  double square_units_;          ///< 2^-63 / unit of Pixel::sum_of_squares
+  std::vector<Pixel> pixels_;
+  RejectedSamples rejected_;
+};
+
+/// The scale a film of this scene needs: the power of two at or above its largest emission, within 2^-40 ..
+/// 2^40.
+double film_scale(const Scene& scene);
+
+}  // namespace testbench

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace testbench {
+
+/// One line on the terminal: bar, share, time left. Silent when standard error is not a terminal.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string label);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// @param share 0 to 1; cheap to call often
+  void show(double share);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string label_;
+  bool on_terminal_;
+  bool drawn_ = false;
+  Clock::time_point start_;
+  Clock::time_point next_;
+};
+
+}  // namespace testbench

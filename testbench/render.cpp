@@ -1,0 +1,125 @@
+#include "testbench/render.hpp"
+
+#include <cstring>
+
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "testbench/error.hpp"
+#include "testbench/host_pc.hpp"
+#include "testbench/host_time.hpp"
+#include "testbench/mono_image.hpp"
+#include "testbench/native_machine.hpp"
+#include "testbench/results.hpp"
+
+namespace testbench {
+namespace {
+
+/// What firmware and image builder refuse, as errors of the input.
+template <class Work>
+auto with_input_errors(Work&& work) {
+  try {
+    return work();
+  } catch (const path_tracer::ProgramError& error) {
+    throw InputError(error.what());
+  } catch (const cn::PolyMemoryOverflow& error) {
+    throw InputError(std::string(error.what()) + "; buffers of a PE:\n" + error.map());
+  } catch (const cn::MachineFault& fault) {
+    throw RunError(fault.what());
+  }
+}
+
+void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) {
+  if (image.layout.total_bytes <= chip.ddr.size_bytes) return;
+  throw InputError("scene and bins need " + std::to_string(image.layout.total_bytes) +
+                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
+}
+
+/// Keeps the count of paths and the wish to stop between the firmware and the caller.
+class ProgressRelay {
+ public:
+  ProgressRelay(const Scene& scene, const path_tracer::Work& work, const RenderProgress& progress)
+      : total_(double(scene.film.width) * scene.film.height * work.samples), progress_(progress) {}
+
+  bool operator()(std::uint64_t paths_issued) {
+    if (progress_ && !progress_(double(paths_issued) / total_)) interrupted_ = true;
+    return !interrupted_;
+  }
+  bool interrupted() const { return interrupted_; }
+
+ private:
+  double total_;
+  const RenderProgress& progress_;
+  bool interrupted_ = false;
+};
+
+/// Builds the firmware on a machine and runs it.
+void run_firmware(cn::Machine& machine, const RenderOptions& options, const MonoImage& image, ProgressRelay& relay,
+                  RenderResult& result) {
+  path_tracer::PathTracer tracer(machine, path_tracer::kernels(options.level), options.program, image.layout,
+                                 options.work);
+  result.poly_memory_map = machine.poly_memory().map();
+  tracer.run(std::ref(relay));
+  result.counts = tracer.counts();
+}
+
+void finish(const ProgressRelay& relay, const HostTimer& timer, RenderResult& result) {
+  result.cpu_seconds = timer.cpu_seconds();
+  result.wall_seconds = timer.wall_seconds();
+  if (relay.interrupted()) throw RunError("interrupted; nothing was written");
+  require_no_rejected_samples(result.film);
+}
+
+}  // namespace
+
+RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, const RenderProgress& progress) {
+  return with_input_errors([&] {
+    path_tracer::validate(options.program);
+    const MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
+    require_mono_memory(image, options.chip);
+    RenderResult result(Film(scene.film, film_scale(scene)));
+    ProgressRelay relay(scene, options.work, progress);
+    const HostTimer timer;
+
+    model::Csx600 chip("csx600", options.chip);
+    HostPc host("host", chip, image, result.film);
+    chip.control_unit.load([&](cn::Machine& machine) { run_firmware(machine, options, image, relay, result); });
+    sc_core::sc_start();
+    chip.control_unit.rethrow_failure();
+    if (!host.finished()) throw RunError("the chip stopped at cycle " + std::to_string(chip.control_unit.now()) +
+                                         " with its firmware waiting for the host");
+    result.chip = collect_statistics(chip, host.finished_cycle());
+    finish(relay, timer, result);
+    return result;
+  });
+}
+
+RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress) {
+  return with_input_errors([&] {
+    path_tracer::validate(options.program);
+    const MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
+    require_mono_memory(image, options.chip);
+    RenderResult result(Film(scene.film, film_scale(scene)));
+    ProgressRelay relay(scene, options.work, progress);
+    const HostTimer timer;
+
+    NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, image.layout.total_bytes);
+    std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
+    ResultReader results(image.layout, result.film);
+    machine.on_signal(path_tracer::HostSemaphores::kResultsReady, [&] {
+      results.fetch([&](cn::MonoAddress from, void* to, std::size_t bytes) {
+        std::memcpy(to, machine.mono() + from, bytes);
+      });
+      machine.sem_signal(path_tracer::HostSemaphores::kResultsFree);
+    });
+    run_firmware(machine, options, image, relay, result);
+    finish(relay, timer, result);
+    return result;
+  });
+}
+
+path_tracer::Level widest_level() {
+  if (__builtin_cpu_supports("x86-64-v4")) return path_tracer::Level::x86_64_v4;
+  if (__builtin_cpu_supports("x86-64-v3")) return path_tracer::Level::x86_64_v3;
+  return path_tracer::Level::x86_64_v2;
+}
+
+}  // namespace testbench

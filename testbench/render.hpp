@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "firmware/path_tracer/kernels.hpp"
+#include "model/chip_config.hpp"
+#include "testbench/chip_statistics.hpp"
+#include "testbench/film.hpp"
+#include "testbench/scene/scene.hpp"
+
+namespace testbench {
+
+/// Which part of a run to show as waves.
+struct WaveOptions {
+  std::string vcd;             ///< file to write
+  std::uint64_t first_cycle = 0;
+  std::uint64_t last_cycle = ~std::uint64_t{0};  ///< exclusive
+};
+
+struct RenderOptions {
+  model::ChipConfig chip;
+  path_tracer::ProgramConfig program;
+  path_tracer::Work work;
+  path_tracer::Level level = path_tracer::Level::x86_64_v2;
+  std::optional<WaveOptions> waves;  ///< on the chip only
+};
+
+struct RenderResult {
+  explicit RenderResult(Film empty) : film(std::move(empty)) {}
+
+  Film film;
+  path_tracer::RunCounts counts;
+  std::string poly_memory_map;
+  std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip
+  double cpu_seconds = 0;              ///< of the run itself, without loading and writing
+  double wall_seconds = 0;
+};
+
+/// Told the share of camera paths issued; returns false to interrupt the run.
+using RenderProgress = std::function<bool(double share)>;
+
+/// The firmware on the SystemC model. At most one a process, as SystemC elaborates once.
+/// Throws InputError for what does not fit the chip, RunError for a run that failed or was interrupted.
+RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, const RenderProgress& progress = {});
+
+/// The same firmware without SystemC: the same image, no time.
+RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress = {});
+
+/// The widest level this machine executes.
+path_tracer::Level widest_level();
+
+}  // namespace testbench

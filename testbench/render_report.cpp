@@ -1,0 +1,117 @@
+#include "testbench/render_report.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "model/chip_file.hpp"
+#include "testbench/host_time.hpp"
+#include "testbench/paper.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* buffering_name(const path_tracer::ProgramConfig& program) {
+  if (program.buffer_loads) return program.buffer_saves ? "both" : "loads";
+  return program.buffer_saves ? "saves" : "none";
+}
+
+Json program_json(const RenderOptions& options) {
+  const path_tracer::ProgramConfig& program = options.program;
+  return {{"program", program_name(program.program)},
+          {"n", program.n},
+          {"buffer", buffering_name(program)},
+          {"bin_blocks", program.bin_blocks},
+          {"slot_vertices", program.slot_vertices},
+          {"roulette_start", program.roulette_start},
+          {"seed", program.seed},
+          {"samples", options.work.samples}};
+}
+
+std::uint64_t rays(const path_tracer::RunCounts& counts) { return counts.segments + counts.shadow_rays; }
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), format, value);
+  return buffer;
+}
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+void add_chip_rows(const RenderResult& result, Rows& rows) {
+  const ChipStatistics& chip = *result.chip;
+  rows.emplace_back("simulated time", text("%.6f s", chip.seconds()) + text(" (%.0f cycles)", double(chip.firmware_cycles)));
+  rows.emplace_back("simulated segments/s", text("%.0f", double(result.counts.segments) / chip.seconds()));
+  rows.emplace_back("PE utilisation", text("%.2f %%", 100 * chip.pe_utilisation()));
+  rows.emplace_back("SIMD efficiency", text("%.2f %%", 100 * chip.simd_efficiency()));
+  rows.emplace_back("exposed DMA", text("%.2f %% of the time", 100 * chip.exposed_pio_share()));
+  rows.emplace_back("DDR bandwidth", text("%.1f MB/s", chip.ddr_bytes_per_second() * 1e-6));
+}
+
+void add_host_rows(const RenderRequest& request, const RenderResult& result, Rows& rows) {
+  const double rate = double(result.counts.segments) / result.cpu_seconds;
+  const double silicon = silicon_segments_per_second(request.options.program.program);
+  rows.emplace_back("host time", text("%.2f s CPU", result.cpu_seconds) + text(", %.2f s wall", result.wall_seconds));
+  rows.emplace_back("host segments/s", text("%.0f", rate));
+  rows.emplace_back("faster than the silicon",
+                    text("%.1f times", rate / silicon) + text(" (paper: %.0f segments/s)", silicon));
+}
+
+}  // namespace
+
+Json render_statistics(const RenderRequest& request, const RenderResult& result) {
+  Json json;
+  json["format"] = "csx600-statistics-1";
+  json["scene"] = request.scene;
+  json["width"] = result.film.size().width;
+  json["height"] = result.film.size().height;
+  json["firmware"] = program_json(request.options);
+  json["machine"] = request.native ? "native" : "chip";
+  json["chip_preset"] = request.options.chip.preset;
+  json["chip_config"] = model::effective_toml(request.options.chip);
+  if (result.chip) {
+    json["simulated_seconds"] = result.chip->seconds();
+    json["simulated_cycles"] = result.chip->firmware_cycles;
+  } else {
+    json["simulated_seconds"] = nullptr;  // a native run has no clock
+    json["simulated_cycles"] = nullptr;
+  }
+  json["segments"] = result.counts.segments;
+  json["rays"] = rays(result.counts);
+  json["image_sha256"] = result.film.sha256();
+  json["counts"] = to_json(result.counts);
+  if (result.chip) json["chip"] = to_json(*result.chip);
+  json["host"] = {{"cpu_seconds", result.cpu_seconds},
+                  {"wall_seconds", result.wall_seconds},
+                  {"peak_bytes", peak_bytes()},
+                  {"segments_per_cpu_second", double(result.counts.segments) / result.cpu_seconds}};
+  return json;
+}
+
+std::string render_table(const RenderRequest& request, const RenderResult& result) {
+  Rows rows;
+  const path_tracer::RunCounts& counts = result.counts;
+  rows.emplace_back("path segments", text("%.0f", double(counts.segments)) + text(" of %.0f paths", double(counts.paths)) +
+                                         text(", %.0f shadow rays", double(counts.shadow_rays)));
+  if (result.chip) add_chip_rows(result, rows);
+  add_host_rows(request, result, rows);
+  std::string table;
+  for (const auto& [label, value] : rows) {
+    char line[160];
+    std::snprintf(line, sizeof(line), "  %-24s %s\n", label.c_str(), value.c_str());
+    table += line;
+  }
+  return table;
+}
+
+std::map<std::string, std::string> render_provenance(const RenderRequest& request, const RenderResult& result) {
+  return {{"csx600.scene", request.scene},
+          {"csx600.firmware", program_json(request.options).dump()},
+          {"csx600.machine", request.native ? "native" : "chip " + request.options.chip.preset},
+          {"csx600.segments", std::to_string(result.counts.segments)},
+          {"csx600.image_sha256", result.film.sha256()}};
+}
+
+}  // namespace testbench

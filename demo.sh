@@ -2,7 +2,7 @@
 # Installs what is missing, builds, and renders the Cornell box through the SystemC model: out/ holds the result.
 set -euo pipefail
 cd "$(dirname "$0")"
-source cmake/build.sh
+source .ci/prepare.sh
 
 prepare_build release
 mkdir -p out

@@ -2,7 +2,7 @@
 # Installs what is missing, builds, and runs the tests. Arguments go to ctest: ./test.sh -R film
 set -euo pipefail
 cd "$(dirname "$0")"
-source cmake/build.sh
+source .ci/prepare.sh
 
 prepare_build release
 ctest --preset release --parallel "$(nproc)" "$@"

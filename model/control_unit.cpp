@@ -13,12 +13,6 @@ constexpr int kFirmwareStackBytes = 8 << 20;
 
 }  // namespace
 
-const char* cycle_cause_name(CycleCause cause) {
-  static constexpr std::array<const char*, kCycleCauses> kNames = {
-      "poly", "stolen", "mono", "data_cache", "semaphore", "wait_load", "wait_save", "wait_pio_queue", "wait_host"};
-  return kNames.at(std::size_t(cause));
-}
-
 Cycles ControlStatistics::total() const { return std::accumulate(cycles.begin(), cycles.end(), Cycles{0}); }
 
 Cycles ControlStatistics::exposed_pio() const {

@@ -1,5 +1,8 @@
 #include "model/mono_pieces.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 namespace model {
 namespace {
 
@@ -11,8 +14,30 @@ void for_each_enabled(const cn::LaneMask& enabled, int num_pes, Visitor&& visit)
       visit(first_pe + __builtin_ctz(bits));
 }
 
-bool is_misaligned(cn::MonoAddress address, std::uint64_t bytes, const Divisor& packet) {
-  return address % 8 != 0 || packet.remainder(address) + bytes > packet.value();
+/// The bytes of as many packets as a piece needs wherever it lies.
+std::uint64_t whole_packets(std::uint64_t bytes, const Divisor& packet) {
+  return packet.quotient(bytes + packet.value() - 1) * packet.value();
+}
+
+bool is_misaligned(cn::MonoAddress address, std::uint64_t bytes, std::uint64_t packets_bytes,
+                   const Divisor& packet) {
+  return address % 8 != 0 || packet.remainder(address) + bytes > packets_bytes;
+}
+
+/// Of `pieces` that lie one behind the other.
+int count_misaligned(cn::MonoAddress address, std::uint64_t bytes, int pieces, const Divisor& packet) {
+  const std::uint64_t packets_bytes = whole_packets(bytes, packet);
+  // Offsets within packets and words repeat.
+  const auto period = static_cast<int>(std::lcm(packet.value(), std::uint64_t{8}) /
+                                       std::gcd(std::lcm(packet.value(), std::uint64_t{8}), bytes));
+  int in_period = 0;
+  int in_rest = 0;
+  for (int i = 0; i < std::min(period, pieces); ++i) {
+    const bool misaligned = is_misaligned(address + std::uint64_t(i) * bytes, bytes, packets_bytes, packet);
+    in_period += misaligned;
+    if (i < pieces % period) in_rest += misaligned;
+  }
+  return pieces / period * in_period + in_rest;
 }
 
 }  // namespace
@@ -66,14 +91,7 @@ bool MonoPieces::describe_gapless_array(int num_pes, const Rules& rules) {
   const cn::MonoAddress address = first_ + std::uint64_t(lowest) * stride_bytes_;
   pes_ = pieces_ = enabled_pes;
   runs_.emplace_back(address, std::uint64_t(enabled_pes) * stride_bytes_);
-  if (stride_bytes_ > rules.packet_bytes.value()) {
-    misaligned_ = enabled_pes;
-  } else if (address % stride_bytes_ != 0 || rules.packet_bytes.value() % stride_bytes_ != 0 ||
-             stride_bytes_ % 8 != 0) {
-    for (int i = 0; i < enabled_pes; ++i)
-      misaligned_ +=
-          is_misaligned(address + std::uint64_t(i) * stride_bytes_, stride_bytes_, rules.packet_bytes);
-  }
+  misaligned_ = count_misaligned(address, stride_bytes_, enabled_pes, rules.packet_bytes);
   return true;
 }
 
@@ -83,6 +101,7 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   const cn::MonoPlaces where = places();
   const auto bytes = std::uint64_t(bytes_per_pe_);
   const Divisor packet = rules.packet_bytes;
+  const std::uint64_t packets_bytes = whole_packets(bytes, packet);
   int pes = 0;
   int pieces = 0;
   int misaligned = 0;
@@ -93,7 +112,7 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
     const cn::MonoAddress address = where[pe];
     if (consolidate && !seen_.insert(address)) return;
     ++pieces;
-    misaligned += is_misaligned(address, bytes, packet);
+    misaligned += is_misaligned(address, bytes, packets_bytes, packet);
     if (run_bytes != 0 && run_address + run_bytes == address) {
       run_bytes += bytes;
       return;

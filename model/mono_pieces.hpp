@@ -42,9 +42,9 @@ class MonoPieces {
 
   int pes() const { return pes_; }        ///< that take part
   int pieces() const { return pieces_; }  ///< that are addressed: `pes` less the consolidated ones
-  int misaligned() const {
-    return misaligned_;
-  }  ///< pieces off an 8-byte boundary or across a packet boundary
+  /// Pieces off an 8-byte boundary, or across more packet boundaries than their size makes necessary
+  /// (csx600.md, section 2, counts none for an array of 80-byte pieces in 64-byte packets).
+  int misaligned() const { return misaligned_; }
   std::uint64_t poly_bytes() const { return std::uint64_t(pes_) * std::uint64_t(bytes_per_pe_); }
   std::uint64_t mono_bytes() const { return std::uint64_t(pieces_) * std::uint64_t(bytes_per_pe_); }
   std::uint64_t packets() const { return packets_; }  ///< each run is cut into packets from its start

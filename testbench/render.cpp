@@ -81,6 +81,8 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, co
 
     model::Csx600 chip("csx600", options.chip);
     HostPc host("host", chip, image, result.film);
+    std::optional<WaveFiles> waves;
+    if (options.waves) waves.emplace(*options.waves, chip);
     chip.control_unit.load([&](cn::Machine& machine) { run_firmware(machine, options, image, relay, result); });
     sc_core::sc_start();
     chip.control_unit.rethrow_failure();
@@ -88,6 +90,7 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, co
                                          " with its firmware waiting for the host");
     result.chip = collect_statistics(chip, host.finished_cycle());
     finish(relay, timer, result);
+    if (waves) waves->finish();
     return result;
   });
 }

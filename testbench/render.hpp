@@ -10,15 +10,9 @@
 #include "testbench/chip_statistics.hpp"
 #include "testbench/film.hpp"
 #include "testbench/scene/scene.hpp"
+#include "testbench/wave_files.hpp"
 
 namespace testbench {
-
-/// Which part of a run to show as waves.
-struct WaveOptions {
-  std::string vcd;             ///< file to write
-  std::uint64_t first_cycle = 0;
-  std::uint64_t last_cycle = ~std::uint64_t{0};  ///< exclusive
-};
 
 struct RenderOptions {
   model::ChipConfig chip;

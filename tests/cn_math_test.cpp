@@ -150,7 +150,7 @@ TEST_F(CnMath, EveryLevelGivesTheSameBits) {
   largest_error(1e-9, 1e9, logarithm, ignore_error);
   largest_error(
       0.0, 1e9, [](const auto& a) { return 1.0 / cn::sqrt(a) * 3.0 + a; }, ignore_error);
-  EXPECT_EQ(hash, 0u);
+  EXPECT_EQ(hash, 0xe4bda3e362053dfau);
 }
 
 TEST_F(CnMath, SignsAreBits) {

@@ -100,6 +100,18 @@ TEST_F(DmaEngine, MisalignedPiecesCostExtra) {
   EXPECT_EQ(engine->statistics().pe_cycles, 148u + 144u);
 }
 
+TEST_F(DmaEngine, ReferenceExampleOf96Pes) {
+  auto config = test_support::test_chip(96);
+  config.pio.setup_cycles = 150;
+  config.pio.per_pe_cycles = 16;
+  build(config);
+  // csx600.md, section 2: 80 B x 96 PEs = 150 + 96 x 26 = 2646 cycles.
+  engine->enqueue(read(MonoPlaces::array(0, 80), 80, LaneMask::first(96), 0), 0);
+  engine->enqueue(write(MonoPlaces::array(0, 80), 80, LaneMask::first(96), 1), 10000);
+  EXPECT_EQ(signal(0), 2646u);
+  EXPECT_EQ(signal(1), 12646u);
+}
+
 TEST_F(DmaEngine, DisabledPesTakeNoPart) {
   build(test_support::test_chip());
   fill_memories(4096);

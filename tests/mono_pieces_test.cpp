@@ -35,7 +35,7 @@ TEST(MonoPieces, GaplessArrayIsOneRun) {
   EXPECT_EQ(pieces.pes(), 16);
   EXPECT_EQ(pieces.pieces(), 16);
   EXPECT_EQ(pieces.packets(), 20u);
-  EXPECT_EQ(pieces.misaligned(), 16);  // longer than a packet
+  EXPECT_EQ(pieces.misaligned(), 0);  // no piece touches more than the two packets that it needs
   EXPECT_EQ(pieces.poly_bytes(), 1280u);
 }
 
@@ -45,6 +45,28 @@ TEST(MonoPieces, GaplessArrayCountsPiecesAcrossPackets) {
   EXPECT_EQ(describe(MonoPlaces::array(0, 48), 48, LaneMask::first(kPes)).misaligned(), 8);
   EXPECT_EQ(describe(MonoPlaces::array(0, 64), 64, LaneMask::first(kPes)).misaligned(), 0);
   EXPECT_EQ(describe(MonoPlaces::array(4, 8), 8, LaneMask::first(kPes)).misaligned(), 16);
+}
+
+TEST(MonoPieces, LongPieceIsMisalignedWhereItTouchesAPacketMore) {
+  EXPECT_EQ(describe(MonoPlaces::array(56, 80), 80, LaneMask::first(1)).misaligned(), 1);  // 56..135
+  // Offsets 8, 24, 40, 56 in turn; the last of the four.
+  EXPECT_EQ(describe(MonoPlaces::array(8, 80), 80, LaneMask::first(kPes)).misaligned(), 4);
+  EXPECT_EQ(describe(MonoPlaces::array(8, 80), 80, LaneMask::first(7)).misaligned(), 1);
+  EXPECT_EQ(describe(MonoPlaces::array(8, 128), 128, LaneMask::first(kPes)).misaligned(), 16);
+}
+
+TEST(MonoPieces, ArrayAndEqualTableCountAlike) {
+  for (const std::uint64_t first : {0, 4, 8, 24, 56, 60}) {
+    for (const int bytes : {8, 24, 40, 48, 64, 80, 104, 128, 200}) {
+      MonoAddress by_pe[kPes];
+      for (int pe = 0; pe < kPes; ++pe) by_pe[pe] = first + std::uint64_t(pe * bytes);
+      const auto table = describe(MonoPlaces::each(by_pe), bytes, LaneMask::first(kPes));
+      const auto array =
+          describe(MonoPlaces::array(first, std::uint64_t(bytes)), bytes, LaneMask::first(kPes));
+      EXPECT_EQ(table.misaligned(), array.misaligned()) << bytes << " bytes at " << first;
+      EXPECT_EQ(table.runs().size(), 1u);
+    }
+  }
 }
 
 TEST(MonoPieces, HolesInTheMaskSplitRuns) {

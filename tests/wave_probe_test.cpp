@@ -1,108 +1,24 @@
 #include "model/wave_probe.hpp"
 
-#include <unistd.h>
+#include <array>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <memory>
-#include <sstream>
-
-#include "tests/support/systemc_fixture.hpp"
-#include "tests/support/vcd_reader.hpp"
+#include "tests/support/wave_probe_fixture.hpp"
 
 namespace {
 
 using model::CycleCause;
 using model::Cycles;
-using model::WaveProbe;
+using test_support::changes;
+using test_support::Reporter;
+using test_support::state;
 using test_support::VcdReader;
+using List = test_support::ChangeList;
+
+class WaveProbe : public test_support::WaveProbeFixture {};
 
 constexpr Cycles kEndOfRun = std::numeric_limits<Cycles>::max();
 
-/// Stands for the control unit: reports ahead of time, then lets time pass.
-class Reporter : public sc_core::sc_module {
- public:
-  using Body = std::function<void(Reporter&)>;
-
-  Reporter(const sc_core::sc_module_name& name, const model::ClockDomain& clock, Body body)
-      : sc_module(name), clock_(clock), body_(std::move(body)) {
-    SC_HAS_PROCESS(Reporter);
-    SC_THREAD(run);
-  }
-
-  void wait_until(Cycles cycle) { wait(clock_.time_at(cycle) - sc_core::sc_time_stamp()); }
-
- private:
-  void run() { body_(*this); }
-
-  model::ClockDomain clock_;
-  Body body_;
-};
-
-class WaveProbeTest : public test_support::SystemCFixture {
- protected:
-  WaveProbeTest() {
-    directory = std::filesystem::temp_directory_path() / ("wave_probe_test." + std::to_string(getpid()));
-    std::filesystem::create_directory(directory);
-  }
-  ~WaveProbeTest() override {
-    probe.reset();
-    std::filesystem::remove_all(directory);
-  }
-
-  std::string file() const { return (directory / "test.vcd").string(); }
-
-  void make_probe(Cycles first = 0, Cycles last = kEndOfRun, double clock_hz = 1e9) {
-    clock = model::ClockDomain(clock_hz);
-    probe = std::make_unique<WaveProbe>("probe", model::WaveConfig{file(), first, last}, clock,
-                                        [this] { return memory; });
-  }
-
-  void simulate(Reporter::Body body) {
-    Reporter reporter("reporter", clock, std::move(body));
-    sc_core::sc_start();
-  }
-
-  void transfer(std::uint64_t id, cn::Direction direction, Cycles started, Cycles finished,
-                std::uint64_t bytes = 64, int queue_depth = 0) {
-    model::PioEvent event;
-    event.id = id;
-    event.direction = direction;
-    event.bytes = bytes;
-    event.started = started;
-    event.queue_depth = queue_depth;
-    probe->started(event);
-    event.finished = finished;
-    probe->finished(event);
-  }
-  void load(std::uint64_t id, Cycles started, Cycles finished) {
-    transfer(id, cn::Direction::mono_to_poly, started, finished);
-  }
-  void save(std::uint64_t id, Cycles started, Cycles finished) {
-    transfer(id, cn::Direction::poly_to_mono, started, finished);
-  }
-
-  std::filesystem::path directory;
-  model::ClockDomain clock{1e9};
-  model::MemoryCounters memory;
-  std::unique_ptr<WaveProbe> probe;
-};
-
-std::uint64_t state(CycleCause cause) {
-  return std::uint64_t(cause) + 1;
-}
-
-/// (time in ps, value) of all changes, the initial value first.
-std::vector<std::pair<std::uint64_t, std::uint64_t>> changes(const VcdReader& vcd, const std::string& path) {
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> list;
-  for (const auto& change : vcd.signal(path).changes) list.emplace_back(change.time, change.value);
-  return list;
-}
-using List = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
-
-TEST_F(WaveProbeTest, FileHoldsTheSignalsOfTheTableAndNothingElse) {
+TEST_F(WaveProbe, FileHoldsTheSignalsOfTheTableAndNothingElse) {
   make_probe();
   simulate([&](Reporter& reporter) {
     probe->spent(CycleCause::mono, 0, 10, -1);
@@ -116,7 +32,7 @@ TEST_F(WaveProbeTest, FileHoldsTheSignalsOfTheTableAndNothingElse) {
     EXPECT_EQ(vcd.signal(signal.path()).width, signal.width) << signal.path();
 }
 
-TEST_F(WaveProbeTest, SpansChangeAtTheirTimes) {
+TEST_F(WaveProbe, SpansChangeAtTheirTimes) {
   make_probe();
   simulate([&](Reporter& reporter) {
     probe->spent(CycleCause::mono, 0, 10, -1);
@@ -147,7 +63,7 @@ TEST_F(WaveProbeTest, SpansChangeAtTheirTimes) {
   EXPECT_EQ(probe->late_changes(), 0u);
 }
 
-TEST_F(WaveProbeTest, UnitsThatReportInAnyOrderAreSortedByTime) {
+TEST_F(WaveProbe, UnitsThatReportInAnyOrderAreSortedByTime) {
   make_probe();
   simulate([&](Reporter& reporter) {
     transfer(0, cn::Direction::mono_to_poly, 50, 80, 6144, 2);
@@ -176,7 +92,7 @@ TEST_F(WaveProbeTest, UnitsThatReportInAnyOrderAreSortedByTime) {
   EXPECT_EQ(changes(vcd, "pio.save_bytes"), (List{{0, 0}, {80'000, 768}, {95'000, 0}}));
 }
 
-TEST_F(WaveProbeTest, TwoEnginesShowSideBySide) {
+TEST_F(WaveProbe, TwoEnginesShowSideBySide) {
   make_probe();
   simulate([&](Reporter& reporter) {
     load(0, 10, 60);
@@ -191,7 +107,7 @@ TEST_F(WaveProbeTest, TwoEnginesShowSideBySide) {
   EXPECT_EQ(vcd.value_at("pio.save_bytes", 70'000), 64u);
 }
 
-TEST_F(WaveProbeTest, EmptySpansLeaveNoTrace) {
+TEST_F(WaveProbe, EmptySpansLeaveNoTrace) {
   make_probe();
   simulate([&](Reporter& reporter) {
     probe->spent(CycleCause::poly, 0, 20, -1);
@@ -207,7 +123,7 @@ TEST_F(WaveProbeTest, EmptySpansLeaveNoTrace) {
   EXPECT_EQ(vcd.time_at_value("control.state", state(CycleCause::mono)), 1'000u);
 }
 
-TEST_F(WaveProbeTest, MemoryCountsAppearWhenTheirRequestIsOverAndNeverFall) {
+TEST_F(WaveProbe, MemoryCountsAppearWhenTheirRequestIsOverAndNeverFall) {
   make_probe();
   simulate([&](Reporter& reporter) {
     memory = {3, 1, 6144, 0, 6144};
@@ -228,52 +144,7 @@ TEST_F(WaveProbeTest, MemoryCountsAppearWhenTheirRequestIsOverAndNeverFall) {
   EXPECT_EQ(changes(vcd, "clear_connect.pio_bytes"), (List{{0, 0}, {40'000, 6912}}));
 }
 
-TEST_F(WaveProbeTest, WindowCutsWithoutLosingWhatHoldsAtItsEnds) {
-  make_probe(100, 200);
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 50, -1);
-    load(0, 40, 120);
-    probe->ran_kernel("before", 50, 60, 96);
-    probe->spent(CycleCause::poly, 50, 150, -1);
-    probe->ran_kernel("across", 60, 150, 64);
-    reporter.wait_until(150);
-    probe->spent(CycleCause::wait_load, 150, 199, 2);
-    probe->spent(CycleCause::mono, 199, 200, -1);  // in the window's last cycle
-    save(1, 190, 260);
-    probe->spent(CycleCause::poly, 200, 300, -1);
-    probe->ran_kernel("after", 200, 300, 64);
-    reporter.wait_until(300);
-    EXPECT_GT(std::filesystem::file_size(file()), 1000u) << "the file is complete once the window is over";
-  });
-  probe->finish();
-  const VcdReader vcd(file());
-  EXPECT_EQ(vcd.first_time(), 100'000u);
-  EXPECT_EQ(vcd.last_time(), 200'000u);
-  EXPECT_EQ(changes(vcd, "control.state"), (List{{100'000, state(CycleCause::poly)},
-                                                 {150'000, state(CycleCause::wait_load)},
-                                                 {199'000, state(CycleCause::mono)}}));
-  EXPECT_EQ(changes(vcd, "control.kernel"), (List{{100'000, 2}, {150'000, 0}}));
-  EXPECT_EQ(changes(vcd, "pio.loading"), (List{{100'000, 1}, {120'000, 0}}));
-  EXPECT_EQ(changes(vcd, "pio.saving"), (List{{100'000, 0}, {190'000, 1}}));
-  EXPECT_EQ(vcd.time_at_value("pio.loading", 1), 20'000u);
-  EXPECT_EQ(vcd.time_at_value("pio.saving", 1), 10'000u);
-  EXPECT_EQ(probe->kernel_names().size(), 3u) << "kernels are numbered alike in every window";
-  EXPECT_EQ(probe->window_start(), clock.time_at(100));
-  EXPECT_EQ(probe->window_end(), clock.time_at(200));
-}
-
-TEST_F(WaveProbeTest, OneStateThroughoutTheWindowIsStillRecorded) {
-  make_probe(1000, 2000);
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::poly, 0, 5000, -1);
-    reporter.wait_until(5000);
-  });
-  probe->finish();
-  const VcdReader vcd(file());
-  EXPECT_EQ(vcd.time_at_value("control.state", state(CycleCause::poly)), 1'000'000u);
-}
-
-TEST_F(WaveProbeTest, PulsesOfOneCycleSurviveLateInALongRun) {
+TEST_F(WaveProbe, PulsesOfOneCycleSurviveLateInALongRun) {
   make_probe(1'000'000'000'000, kEndOfRun, 210e6);  // 79 minutes at 210 MHz, 4761.9 ps a cycle
   const Cycles begin = 1'000'000'000'010;
   simulate([&](Reporter& reporter) {
@@ -291,7 +162,7 @@ TEST_F(WaveProbeTest, PulsesOfOneCycleSurviveLateInALongRun) {
   EXPECT_NEAR(double(vcd.time_at_value("control.semaphore", 5)) / cycle, 50, 0.05);
 }
 
-TEST_F(WaveProbeTest, TotalsOfTheFileEqualTheReportersCounters) {
+TEST_F(WaveProbe, TotalsOfTheFileEqualTheReportersCounters) {
   make_probe();
   std::array<Cycles, model::kCycleCauses> by_cause{};
   Cycles pio_busy = 0;
@@ -337,21 +208,7 @@ TEST_F(WaveProbeTest, TotalsOfTheFileEqualTheReportersCounters) {
   EXPECT_EQ(probe->late_changes(), 0u);
 }
 
-TEST_F(WaveProbeTest, WindowsEndsDoNotKeepASimulationRunning) {
-  make_probe(50, 1'000'000);
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(80);
-  });
-  EXPECT_EQ(sc_core::sc_time_stamp(), clock.time_at(80));
-  probe->finish();
-  const VcdReader vcd(file());
-  EXPECT_EQ(vcd.first_time(), 50'000u);
-  EXPECT_EQ(vcd.last_time(), 80'000u);
-  EXPECT_EQ(vcd.time_at_value("control.state", state(CycleCause::mono)), 30'000u);
-}
-
-TEST_F(WaveProbeTest, ChangesAtTheStopAreDumped) {
+TEST_F(WaveProbe, ChangesAtTheStopAreDumped) {
   make_probe();
   simulate([&](Reporter& reporter) {
     probe->spent(CycleCause::mono, 0, 80, -1);
@@ -366,7 +223,7 @@ TEST_F(WaveProbeTest, ChangesAtTheStopAreDumped) {
   EXPECT_EQ(vcd.value_at("pio.saving", 79'999), 1u);
 }
 
-TEST_F(WaveProbeTest, LateReportsAreCounted) {
+TEST_F(WaveProbe, LateReportsAreCounted) {
   make_probe();
   simulate([&](Reporter& reporter) {
     reporter.wait_until(100);
@@ -376,94 +233,6 @@ TEST_F(WaveProbeTest, LateReportsAreCounted) {
   probe->finish();
   EXPECT_EQ(probe->late_changes(), 4u);
   EXPECT_EQ(changes(VcdReader(file()), "pio.loading"), (List{{0, 0}, {100'000, 1}, {120'000, 0}}));
-}
-
-TEST_F(WaveProbeTest, NothingIsPrinted) {
-  make_probe();
-  testing::internal::CaptureStdout();
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(80);
-  });
-  probe->finish();
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-}
-
-TEST_F(WaveProbeTest, NamedPipeCarriesTheWholeFile) {
-  const std::string copy = (directory / "copy.vcd").string();
-  ASSERT_EQ(std::system(("mkfifo " + file() + " && cat " + file() + " > " + copy + " &").c_str()), 0);
-  while (!std::filesystem::is_fifo(file())) usleep(1000);
-  make_probe();
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(100);
-  });
-  probe->finish();
-  std::string tail;
-  for (int i = 0; i < 1000 && tail.find("#100000") == std::string::npos; ++i, usleep(1000)) {
-    std::ostringstream text;
-    text << std::ifstream(copy).rdbuf();
-    tail = text.str();
-  }
-  EXPECT_EQ(VcdReader(copy).time_at_value("control.state", state(CycleCause::mono)), 80'000u);
-}
-
-void expect_message(const std::function<void()>& action, const std::string& part) {
-  try {
-    action();
-    ADD_FAILURE() << "no WaveError";
-  } catch (const model::WaveError& error) {
-    const std::string message = error.what();
-    EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
-}
-
-TEST_F(WaveProbeTest, FileThatCannotBeCreatedIsRefusedBeforeTheRun) {
-  const auto make = [&](const std::string& name) {
-    return [this, name] {
-      WaveProbe("probe", model::WaveConfig{name}, clock, [] { return model::MemoryCounters{}; });
-    };
-  };
-  expect_message(make((directory / "missing" / "a.vcd").string()), "No such file or directory");
-  std::filesystem::create_directory(directory / "taken.vcd");
-  expect_message(make((directory / "taken.vcd").string()), "Is a directory");
-  expect_message(make((directory / "a.fst").string()), "ends in .vcd");
-}
-
-TEST_F(WaveProbeTest, EmptyWindowIsRefused) {
-  expect_message([&] { make_probe(200, 200); }, "from cycle 200 to before cycle 200");
-}
-
-TEST_F(WaveProbeTest, WindowThatTheRunNeverReachesIsReported) {
-  make_probe(1000, 2000);
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(80);
-  });
-  expect_message([&] { probe->finish(); }, "which ended at cycle 80");
-}
-
-TEST_F(WaveProbeTest, RunThatEndsWhereTheWindowBeginsIsReported) {
-  make_probe(80, 2000);
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    load(0, 79, 81);
-    reporter.wait_until(80);
-    sc_core::sc_stop();
-  });
-  expect_message([&] { probe->finish(); }, "which ended at cycle 80");
-}
-
-TEST_F(WaveProbeTest, FullDiskIsReported) {
-  // SystemC does not look at the result of its writes; a file cut short must be noticed all the same.
-  make_probe(0, 50);
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(80);
-    std::filesystem::resize_file(file(), 1024);
-  });
-  expect_message([&] { probe->finish(); }, "not complete");
 }
 
 }  // namespace

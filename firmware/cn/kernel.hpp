@@ -17,8 +17,11 @@ struct Kernel {
 
 /// Runs `program(arguments)` strip by strip. Strips without an enabled PE are skipped by the host; the chip's cost is
 /// that of the instructions issued, which the other strips give.
+///
+/// Flattened: a kernel is straight-line vector code; one operator left as a call keeps its operands out of registers and
+/// costs a factor of three.
 template <class Arguments, void (*program)(const Arguments&)>
-inline void run_strips(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled, IssueTree& issued) {
+[[gnu::flatten]] void run_strips(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled, IssueTree& issued) {
   issued.clear();
   strip.poly_words = memory.words();
   strip.num_pes = memory.num_pes();

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <immintrin.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <immintrin.h>
+#include <type_traits>
+#include <utility>
 
 namespace cn {
 
@@ -45,14 +48,6 @@ struct Lanes {
 using MaskLanes = Lanes<std::int64_t>;
 
 template <class T>
-inline Lanes<T> broadcast(T value) {
-  Lanes<T> result;
-  // Subtracting zero changes no number; adding it would turn -0.0 into 0.0.
-  for (int i = 0; i < Lanes<T>::kChunks; ++i) result.chunk[i] = value - typename Lanes<T>::Chunk{};
-  return result;
-}
-
-template <class T>
 inline Lanes<T> load_lanes(const void* address) {
   Lanes<T> result;
   std::memcpy(&result, address, sizeof(result));
@@ -64,31 +59,42 @@ inline void store_lanes(void* address, const Lanes<T>& value) {
   std::memcpy(address, &value, sizeof(value));
 }
 
-/// Applies `f` chunk by chunk; the fixed trip count is unrolled away.
+template <class R, class F, std::size_t... i>
+inline Lanes<R> each_chunk_of(F& f, std::index_sequence<i...>) {
+  return {{f(std::integral_constant<int, int(i)>())...}};
+}
+
+/// Applies `f` chunk by chunk. Spelled out by index instead of a loop: GCC keeps a struct of vectors in registers only if
+/// it never sees a variable index into it.
 template <class R, class F>
 inline Lanes<R> each_chunk(F&& f) {
-  Lanes<R> result;
-#pragma GCC unroll 8
-  for (int i = 0; i < Lanes<R>::kChunks; ++i) result.chunk[i] = f(i);
-  return result;
+  return each_chunk_of<R>(f, std::make_index_sequence<std::size_t(Lanes<R>::kChunks)>());
+}
+
+template <class R, class F, std::size_t... i>
+inline void set_each_lane(Lanes<R>& result, F& f, std::index_sequence<i...>) {
+  (result.set(int(i), f(int(i))), ...);
 }
 
 /// Applies `f` lane by lane, for what has no vector form.
 template <class R, class F>
 inline Lanes<R> each_lane(F&& f) {
   Lanes<R> result;
-#pragma GCC unroll 8
-  for (int i = 0; i < kStripLanes; ++i) result.set(i, f(i));
+  set_each_lane(result, f, std::make_index_sequence<std::size_t(kStripLanes)>());
   return result;
+}
+
+template <class T>
+inline Lanes<T> broadcast(T value) {
+  // Subtracting zero changes no number; adding it would turn -0.0 into 0.0.
+  return each_chunk<T>([&](int) { return value - typename Lanes<T>::Chunk{}; });
 }
 
 /// The same bits under another 8-byte type.
 template <class To, class From>
 inline Lanes<To> bit_cast_lanes(const Lanes<From>& from) {
-  static_assert(sizeof(To) == sizeof(From));
-  Lanes<To> to;
-  std::memcpy(&to, &from, sizeof(to));
-  return to;
+  static_assert(sizeof(To) == 8 && sizeof(From) == 8);
+  return each_chunk<To>([&](int i) { return reinterpret_cast<typename Lanes<To>::Chunk>(from.chunk[i]); });
 }
 
 template <class T>
@@ -117,8 +123,15 @@ inline Lanes<std::uint64_t> multiply_low_words(const Lanes<std::uint64_t>& a, co
 /// Bit i is lane i's.
 inline std::uint32_t mask_bits(const MaskLanes& mask) {
   std::uint32_t bits = 0;
-#pragma GCC unroll 8
-  for (int i = 0; i < kStripLanes; ++i) bits |= static_cast<std::uint32_t>(mask[i] & 1) << i;
+  for (int i = 0; i < MaskLanes::kChunks; ++i) {
+#if defined(__AVX512F__)
+    bits |= std::uint32_t{_mm512_movepi64_mask(__m512i(mask.chunk[i]))};
+#elif defined(__AVX2__)
+    bits |= static_cast<std::uint32_t>(_mm256_movemask_pd(__m256d(mask.chunk[i]))) << (4 * i);
+#else
+    bits |= static_cast<std::uint32_t>(_mm_movemask_pd(__m128d(mask.chunk[i]))) << (2 * i);
+#endif
+  }
   return bits;
 }
 

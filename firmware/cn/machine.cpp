@@ -5,6 +5,14 @@
 namespace cn {
 namespace {
 
+void check_span(const PolySpan& span, const PolyMemory& memory) {
+  const int capacity = memory.capacity_bytes();
+  if (span.offset_bytes < 0 || span.size_bytes < 0 || span.size_bytes > capacity - span.offset_bytes)
+    throw MachineFault("transfer of " + std::to_string(span.size_bytes) + " bytes at poly offset " +
+                       std::to_string(span.offset_bytes) + " leaves the " + std::to_string(capacity) +
+                       " bytes of poly SRAM");
+}
+
 void check_alignment(const Transfer& transfer, int num_pes) {
   const auto fault = [&](const std::string& what, std::uint64_t found) {
     throw MachineFault("transfer of poly offset " + std::to_string(transfer.poly.offset_bytes) + ": " + what + " is " +
@@ -28,12 +36,14 @@ Machine::Machine(int num_pes, int poly_bytes_per_pe) : poly_memory_(num_pes, pol
 
 void Machine::async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source, const LaneMask& enabled) {
   const Transfer transfer{Direction::mono_to_poly, destination, source, enabled, done};
+  check_span(transfer.poly, poly_memory_);
   check_alignment(transfer, num_pes());
   start_transfer(transfer);
 }
 
 void Machine::async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source, const LaneMask& enabled) {
   const Transfer transfer{Direction::poly_to_mono, source, destination, enabled, done};
+  check_span(transfer.poly, poly_memory_);
   check_alignment(transfer, num_pes());
   start_transfer(transfer);
 }

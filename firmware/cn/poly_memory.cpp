@@ -27,16 +27,15 @@ PolySpan PolyMemory::allocate(const std::string& name, int size_bytes) {
 
 std::string PolyMemory::map() const {
   std::string text = "  offset   bytes  buffer\n";
-  char line[128];
-  for (const Buffer& buffer : buffers_) {
-    std::snprintf(line, sizeof(line), "%8d%8d  %s\n", buffer.span.offset_bytes, buffer.span.size_bytes,
-                  buffer.name.c_str());
-    text += line;
-  }
-  std::snprintf(line, sizeof(line), "%8d%8d  (free)\n", used_bytes(), capacity_bytes_ - used_bytes());
-  text += line;
-  std::snprintf(line, sizeof(line), "%8d%8d  (PE number, reserved by the ABI)\n", capacity_bytes_, kReservedBytes);
-  return text + line;
+  const auto add_line = [&](int offset_bytes, int size_bytes, const std::string& name) {
+    char numbers[32];
+    std::snprintf(numbers, sizeof(numbers), "%8d%8d  ", offset_bytes, size_bytes);
+    text += numbers + name + '\n';
+  };
+  for (const Buffer& buffer : buffers_) add_line(buffer.span.offset_bytes, buffer.span.size_bytes, buffer.name);
+  add_line(used_bytes(), capacity_bytes_ - used_bytes(), "(free)");
+  add_line(capacity_bytes_, kReservedBytes, "(PE number, reserved by the ABI)");
+  return text;
 }
 
 }  // namespace cn

@@ -9,6 +9,7 @@ namespace cn {
 /// enabled PEs only.
 template <class T>
 struct PolyField {
+  static_assert(sizeof(T) == 4 || sizeof(T) == 8, "a narrower write would reach its neighbour in the word");
   int offset_bytes = 0;
 
   poly<T> read() const {

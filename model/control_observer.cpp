@@ -1,0 +1,14 @@
+#include "model/control_observer.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace model {
+
+const char* cycle_cause_name(CycleCause cause) {
+  static constexpr std::array<const char*, kCycleCauses> kNames = {
+      "poly", "stolen", "mono", "data_cache", "semaphore", "wait_load", "wait_save", "wait_pio_queue", "wait_host"};
+  return kNames.at(std::size_t(cause));
+}
+
+}  // namespace model

@@ -1,0 +1,341 @@
+#include "firmware/path_tracer/triangle.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/strip_fixture.hpp"
+
+namespace {
+
+using cn::InstructionClass;
+using cn::poly;
+using path_tracer::kNoFace;
+using path_tracer::TriangleRecord;
+using test_support::load;
+using test_support::PerPe;
+using test_support::store;
+
+using Vector = cn::vec3<double>;
+using Exact = cn::vec3<long double>;  // 11 bits more than the kernels have
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Exact exact(const Vector& v) {
+  return {v.x, v.y, v.z};
+}
+
+TriangleRecord triangle(const Vector& a, const Vector& b, const Vector& c, int face = 0) {
+  return {a, b - a, c - a, face, 0};
+}
+
+struct Ray {
+  Vector origin;
+  Vector direction;
+};
+
+/// Where a line meets the plane of a triangle, and how far from the border of acceptance that is (relative;
+/// negative: missed).
+struct Meeting {
+  long double distance = 0;
+  long double margin = 0;
+  bool front = false;
+};
+
+Meeting meet(const Ray& ray, const TriangleRecord& t) {
+  const Exact edge1 = exact(t.edge1);
+  const Exact edge2 = exact(t.edge2);
+  const Exact direction = exact(ray.direction);
+  const Exact s = exact(ray.origin) - exact(t.vertex);
+  const Exact normal = cross(edge1, edge2);
+  const long double determinant = -dot(normal, direction);
+  const long double u = dot(cross(edge2, s), direction) / determinant;  // by Cramer's rule, in another order
+  const long double v = dot(cross(s, edge1), direction) / determinant;
+  Meeting meeting;
+  meeting.distance = dot(normal, s) / determinant;
+  const long double size = std::sqrt(dot(s, s)) / std::sqrt(dot(direction, direction));
+  meeting.margin = std::min({u, v, 1 - u - v, meeting.distance / size});
+  meeting.front = determinant > 0;
+  return meeting;
+}
+
+class TriangleTest : public test_support::StripFixture {
+ protected:
+  TriangleTest() : StripFixture(256) {}
+
+  struct Hits {
+    PerPe<std::int32_t> triangle;
+    PerPe<double> distance;
+    PerPe<double> determinant;
+  };
+
+  static cn::vec3<poly<double>> load3(const std::vector<Ray>& rays, Vector Ray::*member) {
+    PerPe<double> x;
+    PerPe<double> y;
+    PerPe<double> z;
+    for (const Ray& ray : rays) {
+      x.push_back((ray.*member).x);
+      y.push_back((ray.*member).y);
+      z.push_back((ray.*member).z);
+    }
+    return {load(x), load(y), load(z)};
+  }
+  std::vector<Ray> on_all_pes(std::vector<Ray> rays) const {
+    rays.resize(std::size_t(num_pes()), rays.empty() ? Ray{} : rays.back());
+    return rays;
+  }
+
+  Hits nearest(const std::vector<Ray>& some_rays, const std::vector<TriangleRecord>& triangles,
+               int left_face = kNoFace) {
+    const std::vector<Ray> rays = on_all_pes(some_rays);
+    Hits hits{per_pe<std::int32_t>(), per_pe<double>(), per_pe<double>()};
+    run([&] {
+      const path_tracer::Nearest found =
+          path_tracer::nearest_triangle(load3(rays, &Ray::origin), load3(rays, &Ray::direction), left_face,
+                                        triangles.data(), int(triangles.size()));
+      store(hits.triangle, found.triangle);
+      store(hits.distance, found.distance / cn::abs(found.determinant));
+      store(hits.determinant, found.determinant);
+    });
+    return hits;
+  }
+  int nearest_one(const Ray& ray, const std::vector<TriangleRecord>& triangles, int left_face = kNoFace) {
+    return nearest({ray}, triangles, left_face).triangle[0];
+  }
+
+  bool blocked(const Ray& ray, const std::vector<TriangleRecord>& triangles, int left_face = kNoFace,
+               int reached_face = kNoFace) {
+    const std::vector<Ray> rays = on_all_pes({ray});
+    PerPe<char> found = per_pe<char>();
+    run([&] {
+      store(found, path_tracer::is_blocked(load3(rays, &Ray::origin), load3(rays, &Ray::direction), left_face,
+                                           reached_face, triangles.data(), int(triangles.size())));
+    });
+    return found[0] != 0;
+  }
+
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(random_() >> 11) * 0x1p-53);
+  }
+  Vector point(double scale) {
+    return {uniform(-scale, scale), uniform(-scale, scale), uniform(-scale, scale)};
+  }
+  Vector unit_vector() {
+    while (true) {
+      const Vector v = point(1.0);
+      const double length = std::sqrt(dot(v, v));
+      if (length > 0.1 && length < 1) return v * (1 / length);
+    }
+  }
+
+  std::mt19937_64 random_{31};
+};
+
+const TriangleRecord kUnit = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});  // its front looks along +z
+
+TEST_F(TriangleTest, AgreesWithTheExactNearestHitAtAnyScale) {
+  for (const double scale : {1e-8, 1e-3, 1.0, 1e5, 1e8}) {
+    SCOPED_TRACE(scale);
+    int hits = 0;
+    int misses = 0;
+    for (int round = 0; round < 20; ++round) {
+      std::vector<TriangleRecord> triangles;
+      for (int i = 0; i < 24; ++i) triangles.push_back(triangle(point(scale), point(scale), point(scale), i));
+      std::vector<Ray> rays;
+      for (int pe = 0; pe < num_pes(); ++pe) rays.push_back({point(scale), unit_vector()});
+      const Hits found = nearest(rays, triangles);
+      for (std::size_t pe = 0; pe < rays.size(); ++pe) {
+        int expected = -1;
+        Meeting nearest_meeting;
+        bool too_close_to_call = false;
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+          const Meeting meeting = meet(rays[pe], triangles[i]);
+          too_close_to_call |= std::abs(meeting.margin) < 1e-9;
+          if (meeting.margin <= 0 || (expected >= 0 && meeting.distance >= nearest_meeting.distance))
+            continue;
+          expected = int(i);
+          nearest_meeting = meeting;
+        }
+        if (too_close_to_call) continue;
+        ASSERT_EQ(found.triangle[pe], expected);
+        ++(expected >= 0 ? hits : misses);
+        if (expected < 0) continue;
+        ASSERT_NEAR(found.distance[pe] / double(nearest_meeting.distance), 1.0, 1e-9);
+        ASSERT_EQ(found.determinant[pe] > 0, nearest_meeting.front);
+      }
+    }
+    EXPECT_GT(hits, 1000);
+    EXPECT_GT(misses, 1000);
+  }
+}
+
+TEST_F(TriangleTest, AgreesWithTheExactBlockersAtAnyScale) {
+  for (const double scale : {1e-8, 1.0, 1e8}) {
+    SCOPED_TRACE(scale);
+    int counts[2] = {0, 0};
+    for (int round = 0; round < 600; ++round) {
+      std::vector<TriangleRecord> triangles;
+      for (int i = 0; i < 3; ++i) triangles.push_back(triangle(point(scale), point(scale), point(scale), i));
+      const Vector from = point(scale);
+      const Ray ray{from, point(scale) - from};
+      bool expected = false;
+      bool too_close_to_call = false;
+      for (const TriangleRecord& t : triangles) {
+        const Meeting meeting = meet(ray, t);
+        const long double margin = std::min(meeting.margin, 1 - meeting.distance);
+        too_close_to_call |= std::abs(margin) < 1e-9;
+        expected |= margin > 0;
+      }
+      if (too_close_to_call) continue;
+      ASSERT_EQ(blocked(ray, triangles), expected);
+      ++counts[expected];
+    }
+    EXPECT_GT(counts[0], 100);
+    EXPECT_GT(counts[1], 50);
+  }
+}
+
+TEST_F(TriangleTest, EdgesAndVerticesBelongToTheTriangle) {
+  for (const Vector& to :
+       {Vector{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}, {0, 0.25, 0}, {0.5, 0.5, 0}, {0.75, 0.25, 0}}) {
+    EXPECT_EQ(nearest_one({{to.x, to.y, 2}, {0, 0, -1}}, {kUnit}), 0) << to.x << " " << to.y;
+    EXPECT_EQ(nearest_one({{to.x, to.y, -2}, {0, 0, 1}}, {kUnit}), 0) << to.x << " " << to.y;
+  }
+  const double out = 0x1p-40;
+  for (const Vector& to :
+       {Vector{-out, 0.5, 0}, {0.5, -out, 0}, {0.5 + out, 0.5, 0}, {1 + out, 0, 0}, {0, 1 + out, 0}}) {
+    EXPECT_EQ(nearest_one({{to.x, to.y, 2}, {0, 0, -1}}, {kUnit}), -1) << to.x << " " << to.y;
+    EXPECT_EQ(nearest_one({{to.x, to.y, -2}, {0, 0, 1}}, {kUnit}), -1) << to.x << " " << to.y;
+  }
+}
+
+TEST_F(TriangleTest, FrontAndBackAreToldApart) {
+  const Hits front = nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, {kUnit});
+  EXPECT_EQ(front.triangle[0], 0);
+  EXPECT_GT(front.determinant[0], 0);
+  EXPECT_EQ(front.distance[0], 2.0);
+  const Hits back = nearest({{{0.25, 0.25, -3}, {0, 0, 1}}}, {kUnit});
+  EXPECT_EQ(back.triangle[0], 0);
+  EXPECT_LT(back.determinant[0], 0);
+  EXPECT_EQ(back.distance[0], 3.0);
+}
+
+TEST_F(TriangleTest, OnlyWhatIsAheadCounts) {
+  EXPECT_EQ(nearest_one({{0.25, 0.25, 2}, {0, 0, 1}}, {kUnit}), -1);
+  EXPECT_EQ(nearest_one({{0.25, 0.25, 0}, {0, 0, 1}}, {kUnit}), -1) << "the origin lies on it";
+  EXPECT_EQ(nearest_one({{0.25, 0.25, 0x1p-60}, {0, 0, -1}}, {kUnit}), 0);
+}
+
+TEST_F(TriangleTest, ParallelRaysMiss) {
+  for (const Vector& direction : {Vector{1, 0, 0}, {0, -1, 0}, {0.5, 0.25, 0}, {-1, 1, 0}}) {
+    for (const Vector& origin :
+         {Vector{-2, 0.25, 0}, {0.25, 0.25, 0}, {0, 0, 0}, {0.25, 2, 0}, {0.25, 0.25, 1}, {0, 0, -1}}) {
+      EXPECT_EQ(nearest_one({origin, direction}, {kUnit}), -1);
+      EXPECT_FALSE(blocked({origin, direction}, {kUnit}));
+      // Nor do they hide what is met.
+      const TriangleRecord wall =
+          triangle({origin + direction * 4 + Vector{-9, -9, -9}}, origin + direction * 4 + Vector{9, -9, 9},
+                   origin + direction * 4 + Vector{0, 9, 0}, 1);
+      EXPECT_EQ(nearest_one({origin, direction}, {kUnit, wall}),
+                nearest_one({origin, direction}, {wall}) < 0 ? -1 : 1);
+    }
+  }
+}
+
+TEST_F(TriangleTest, TrianglesWithoutAreaAreNeverHit) {
+  const std::vector<TriangleRecord> degenerate{
+      triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}),                      // a point
+      triangle({-1, -1, 0}, {1, 1, 0}, {3, 3, 0}),                    // a line
+      triangle({0.1, 0.2, 0.3}, {0.4, -0.5, 0.7}, {0.4, -0.5, 0.7}),  // two equal vertices
+      triangle({0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, {0.4, -0.5, 0.7})};
+  std::vector<TriangleRecord> with_wall = degenerate;
+  with_wall.push_back(triangle({-1e3, -1e3, -5}, {3e3, -1e3, -5}, {-1e3, 3e3, -5}, 1));
+  std::vector<Ray> rays{{{0, 0, 2}, {0, 0, -1}}, {{0.5, 0.5, 2}, {0, 0, -1}}, {{-2, -2, 0}, {1, 1, 0}}};
+  while (rays.size() < std::size_t(num_pes())) {
+    const Vector origin{uniform(-2, 2), uniform(-2, 2), 2};
+    rays.push_back({origin, Vector{uniform(-1, 1), uniform(-1, 1), -0.5} - origin});
+  }
+  const Hits nothing = nearest(rays, degenerate);
+  const Hits wall = nearest(rays, with_wall);
+  for (std::size_t pe = 0; pe < rays.size(); ++pe) {
+    EXPECT_EQ(nothing.triangle[pe], -1) << pe;
+    EXPECT_EQ(wall.triangle[pe], rays[pe].direction.z < 0 ? 4 : -1) << pe;
+    EXPECT_FALSE(pe < 8 && blocked(rays[pe], degenerate)) << pe;
+  }
+}
+
+TEST_F(TriangleTest, ARayIgnoresTheFaceThatItLeaves) {
+  const std::vector<TriangleRecord> triangles{triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 5),
+                                              triangle({0, 0, -1}, {1, 0, -1}, {0, 1, -1}, 5),
+                                              triangle({0, 0, -2}, {1, 0, -2}, {0, 1, -2}, 6)};
+  const Ray ray{{0.25, 0.25, 1}, {0, 0, -1}};
+  EXPECT_EQ(nearest_one(ray, triangles), 0);
+  EXPECT_EQ(nearest_one(ray, triangles, 5), 2);
+  EXPECT_EQ(nearest_one(ray, triangles, 6), 0);
+  const Ray segment{{0.25, 0.25, 1}, {0, 0, -10}};
+  EXPECT_TRUE(blocked(segment, triangles));
+  EXPECT_TRUE(blocked(segment, triangles, 5));
+  EXPECT_TRUE(blocked(segment, triangles, kNoFace, 6));
+  EXPECT_FALSE(blocked(segment, triangles, 5, 6));
+  EXPECT_FALSE(blocked(segment, triangles, 6, 5));
+}
+
+TEST_F(TriangleTest, BlockersLieBetweenTheEndPoints) {
+  const auto from = [](double z, double to_z) { return Ray{{0.25, 0.25, z}, {0, 0, to_z - z}}; };
+  EXPECT_TRUE(blocked(from(1, -1), {kUnit}));
+  EXPECT_TRUE(blocked(from(-1, 1), {kUnit})) << "from behind";
+  EXPECT_FALSE(blocked(from(2, 1), {kUnit}));
+  EXPECT_FALSE(blocked(from(-1, -2), {kUnit}));
+  EXPECT_FALSE(blocked(from(1, 0), {kUnit})) << "ends on it";
+  EXPECT_FALSE(blocked(from(0, 1), {kUnit})) << "starts on it";
+  EXPECT_TRUE(blocked(from(1, -0x1p-40), {kUnit}));
+  EXPECT_TRUE(blocked(from(0x1p-40, -1), {kUnit}));
+  EXPECT_FALSE(blocked({{2, 2, 1}, {0, 0, -2}}, {kUnit})) << "passes by";
+}
+
+TEST_F(TriangleTest, NanNeverWins) {
+  const TriangleRecord wall = triangle({-9, -9, -1}, {9, -9, -1}, {0, 9, -1}, 1);
+  const Ray good{{0.25, 0.25, 1}, {0, 0, -1}};
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    for (double Vector::*component : {&Vector::x, &Vector::y, &Vector::z}) {
+      for (Vector TriangleRecord::*member :
+           {&TriangleRecord::vertex, &TriangleRecord::edge1, &TriangleRecord::edge2}) {
+        TriangleRecord broken = kUnit;
+        broken.*member.*component = bad;
+        EXPECT_EQ(nearest_one(good, {broken, wall}), 1) << bad;
+        EXPECT_EQ(nearest_one(good, {wall, broken}), 0) << bad;
+        EXPECT_FALSE(blocked({good.origin, good.direction * 1.5}, {broken})) << bad;
+      }
+      for (Vector Ray::*member : {&Ray::origin, &Ray::direction}) {
+        Ray broken = good;
+        broken.*member.*component = bad;
+        const Hits hits = nearest({good, broken, good}, {kUnit, wall});
+        EXPECT_EQ(hits.triangle[0], 0);
+        EXPECT_EQ(hits.triangle[1], -1) << bad;
+        EXPECT_EQ(hits.triangle[2], 0);
+        EXPECT_FALSE(blocked(broken, {kUnit, wall})) << bad;
+      }
+    }
+  }
+}
+
+TEST_F(TriangleTest, EqualDistancesGoToTheFirst) {
+  EXPECT_EQ(nearest_one({{0.25, 0.25, 2}, {0, 0, -1}}, {kUnit, kUnit, kUnit}), 0);
+}
+
+TEST_F(TriangleTest, NothingIsInfinitelyFar) {
+  EXPECT_EQ(nearest_one({{0.25, 0.25, 2}, {0, 0, -1}}, {}), -1);
+  EXPECT_EQ(nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, {}).distance[0], kInfinity);
+}
+
+/// Cost is data-independent: the same for rays that all miss.
+TEST_F(TriangleTest, IssuesTheSameForEveryRay) {
+  nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, {kUnit, kUnit});
+  const cn::IssueCounts hit = issue_tree.total();
+  nearest({{{5, 5, 2}, {0, 0, 1}}}, {kUnit, kUnit});
+  EXPECT_EQ(issue_tree.total(), hit);
+  EXPECT_EQ(hit[InstructionClass::mono], 26u);
+  EXPECT_EQ(hit[InstructionClass::fp64_mul], 2 * 26u);
+}
+
+}  // namespace

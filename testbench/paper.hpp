@@ -17,6 +17,10 @@ struct PaperRow {
   std::array<double, 3> seconds;  ///< segments, direct, full
 };
 
+/// The cell that the preset `paper` was fitted to (model/chip_presets.cpp); all others are predicted.
+inline constexpr int kFittedN = 1;
+inline constexpr path_tracer::Program kFittedProgram = path_tracer::Program::segments;
+
 /// Coulthurst et al. 2008, section 4.1.
 const std::vector<PaperRow>& paper_rows();
 

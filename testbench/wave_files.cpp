@@ -13,8 +13,8 @@ namespace {
 /// The control unit catches up with SystemC time this often, so that few changes wait to be shown.
 constexpr model::Cycles kSyncCycles = 50'000;
 
-/// What the view opens on: about two blocks of the paper's firmware.
-constexpr std::uint64_t kViewPicoseconds = 1'000'000'000;
+/// What the view opens on: a few blocks of the paper's intersection bin.
+constexpr std::uint64_t kViewPicoseconds = 300'000'000;
 
 model::MemoryCounters memory_counters(const model::Csx600& chip) {
   const model::DdrStatistics& ddr = chip.mono_ddr.statistics();
@@ -34,7 +34,7 @@ void require_writable_waves(const WaveOptions& options) {
 }
 
 WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
-    : vcd_(options.vcd), temporary_(sibling(".partial.vcd")) {
+    : chip_(chip), vcd_(options.vcd), temporary_(sibling(".partial.vcd")) {
   try {
     const model::WaveConfig config{temporary_, options.first_cycle, options.last_cycle};
     probe_.emplace("wave_probe", config, chip.clock, [&chip] { return memory_counters(chip); });
@@ -65,6 +65,15 @@ void WaveFiles::finish() {
   write_view();
 }
 
+void WaveFiles::add_semaphore_names(std::vector<model::ValueName>& names) const {
+  const std::vector<std::string>& semaphores = chip_.control_unit.semaphore_names();
+  for (std::size_t i = 0; i < semaphores.size(); ++i) {
+    std::string name = semaphores[i];
+    std::replace(name.begin(), name.end(), ' ', '_');  // a translate filter ends a name at a blank
+    names.push_back({i, name});
+  }
+}
+
 void WaveFiles::write_view() const {
   const auto& table = model::wave_signal_table();
   model::ViewOptions view;
@@ -74,7 +83,8 @@ void WaveFiles::write_view() const {
   const std::uint64_t recorded = probe_->window_end().value() - probe_->window_start().value();
   view.span_picoseconds = std::clamp<std::uint64_t>(recorded, 1, kViewPicoseconds);
   for (const model::WaveSignalInfo& signal : table) {
-    const auto names = model::wave_value_names(signal, probe_->kernel_names());
+    auto names = model::wave_value_names(signal, probe_->kernel_names());
+    if (signal.id == model::WaveSignal::control_semaphore) add_semaphore_names(names);
     if (names.empty()) continue;
     const std::filesystem::path file = sibling("." + std::string(signal.scope) + "_" + std::string(signal.name) + ".txt");
     std::ostringstream filter;

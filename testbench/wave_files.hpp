@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "model/csx600.hpp"
 #include "model/wave_probe.hpp"
+#include "model/wave_signals.hpp"
 
 namespace testbench {
 
@@ -34,7 +37,9 @@ class WaveFiles {
  private:
   std::filesystem::path sibling(const std::string& suffix) const;
   void write_view() const;
+  void add_semaphore_names(std::vector<model::ValueName>& names) const;
 
+  model::Csx600& chip_;
   std::filesystem::path vcd_;
   std::filesystem::path temporary_;
   std::optional<model::WaveProbe> probe_;

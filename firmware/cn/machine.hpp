@@ -51,6 +51,7 @@ class Machine {
 
   /// A semaphore of its own for each caller; `name` appears in waves and fault messages.
   Semaphore allocate_semaphore(const std::string& name);
+  const std::vector<std::string>& semaphore_names() const { return semaphore_names_; }
   const std::string& semaphore_name(Semaphore semaphore) const { return semaphore_names_.at(std::size_t(semaphore.index)); }
 
   virtual void sem_signal(Semaphore semaphore) = 0;

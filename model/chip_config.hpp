@@ -28,7 +28,6 @@ struct ChipConfig {
 
   struct Control {
     int data_cache_bytes;
-    int instruction_cache_bytes;
     int cache_line_bytes;
     int cache_miss_cycles;  ///< in the control unit, on top of what the memory takes
     int semaphore_cycles;   ///< a signal or an unblocked wait

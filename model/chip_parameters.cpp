@@ -199,8 +199,6 @@ void validate(const ChipConfig& config, std::string_view origin) {
   const std::string multiple = "a multiple of";
   require(control.data_cache_bytes % control.cache_line_bytes == 0, config, "control.data_cache_bytes",
           multiple, "control.cache_line_bytes", origin);
-  require(control.instruction_cache_bytes % control.cache_line_bytes == 0, config,
-          "control.instruction_cache_bytes", multiple, "control.cache_line_bytes", origin);
   require(config.clear_connect.packet_bytes >= config.clear_connect.bytes_per_cycle, config,
           "clear_connect.packet_bytes", "at least", "clear_connect.bytes_per_cycle", origin);
   require(ddr.page_bytes % control.cache_line_bytes == 0, config, "ddr.page_bytes", multiple,

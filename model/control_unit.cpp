@@ -30,10 +30,13 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       mono_window_(config.ddr.size_bytes, poly_memory()),
       line_(std::size_t(config.control.cache_line_bytes)) {
   semaphores.bind(*this);
+  mono_socket.register_invalidate_direct_mem_ptr(this, &ControlUnit::forget_mono_pointer);
   SC_HAS_PROCESS(ControlUnit);
   SC_THREAD(run);
   set_stack_size(kFirmwareStackBytes);
 }
+
+void ControlUnit::forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) { mono_window_.invalidate(); }
 
 void ControlUnit::start() { start_event_.notify(sc_core::SC_ZERO_TIME); }
 
@@ -155,12 +158,22 @@ void ControlUnit::wait_for_signal(cn::Semaphore semaphore) {
 
 void ControlUnit::wait_for_host(cn::Semaphore semaphore) {
   std::optional<Cycles> at = semaphore_file_.take(semaphore.index);
-  while (!at) {
-    synchronise();
-    wait(signalled_by_host_);
+  if (!at) {
+    synchronise();  // the host may answer while time catches up
     at = semaphore_file_.take(semaphore.index);
   }
+  for (; !at; at = semaphore_file_.take(semaphore.index)) wait_for_host_event();
   if (*at > now_) spend(CycleCause::wait_host, *at - now_, semaphore.index);
+}
+
+/// Lets time pass until the host signals something, or a queued request starts: it is served in its time.
+void ControlUnit::wait_for_host_event() {
+  if (const std::optional<Cycles> request = pio->next_start()) {
+    wait(clock_.time_at(*request) - sc_core::sc_time_stamp(), signalled_by_host_);
+  } else {
+    wait(signalled_by_host_);
+  }
+  pio->settle(clock_.cycle_at(sc_core::sc_time_stamp()));
 }
 
 void ControlUnit::share_with_host(cn::Semaphore semaphore) {

@@ -90,8 +90,10 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void spend(CycleCause cause, Cycles cycles, int semaphore = -1);
   void wait_for_signal(cn::Semaphore semaphore);
   void wait_for_host(cn::Semaphore semaphore);
+  void wait_for_host_event();
   void synchronise();
   void synchronise_for_observer();
+  void forget_mono_pointer(sc_dt::uint64 start, sc_dt::uint64 end);
   void fetch_line(cn::MonoAddress line);
   void send(cn::MonoAddress address, std::uint8_t* data, std::size_t size);
 

@@ -91,6 +91,11 @@ bool DmaEngine::serve_next() {
   return next.has_value();
 }
 
+std::optional<Cycles> DmaEngine::next_start() const {
+  const auto next = queue_.next();
+  return next ? std::optional(next->cycle) : std::nullopt;
+}
+
 std::uint64_t DmaEngine::words_moved_before(Cycles cycle) const {
   std::uint64_t words = 0;
   for (const WordHistory& history : history_) words += history.before(cycle);

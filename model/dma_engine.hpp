@@ -42,6 +42,7 @@ class DmaEngine : public sc_core::sc_module, public PioPort {
   Cycles enqueue(const cn::Transfer& transfer, Cycles now) override;
   void settle(Cycles now) override;
   bool serve_next() override;
+  std::optional<Cycles> next_start() const override;
   /// Remembers the latest requests only, at least as many as the queue holds; words of older ones count as
   /// moved.
   std::uint64_t words_moved_before(Cycles cycle) const override;

@@ -174,12 +174,9 @@ void declare_control(Parameters& table) {
   table.push_back(integer<group, &Control::data_cache_bytes>(
       "control.data_cache_bytes", "bytes", 4096, {64, 1048576, 8}, assumed,
       "data cache of the control unit: exists [S9], size assumed [reference, section 9]"));
-  table.push_back(integer<group, &Control::instruction_cache_bytes>(
-      "control.instruction_cache_bytes", "bytes", 8192, {64, 1048576, 8}, assumed,
-      "instruction cache of the control unit: exists [S9], size assumed [reference, section 9]"));
   table.push_back(integer<group, &Control::cache_line_bytes>("control.cache_line_bytes", "bytes", 32,
                                                              {8, 512, 8}, assumed,
-                                                             "line of both caches [reference, section 1]"));
+                                                             "line of the data cache [reference, section 1]"));
   table.push_back(integer<group, &Control::cache_miss_cycles>(
       "control.cache_miss_cycles", "cycles", 25, {0, kMaxCycles}, assumed,
       "cost of a miss in the control unit, on top of what the memory takes [reference, section 1]"));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <systemc>
 
 #include "firmware/cn/transfer.hpp"
@@ -21,6 +22,9 @@ class PioPort : public virtual sc_core::sc_interface {
   /// Serves the next queued request, whenever it starts; false when none is queued. For a control unit that waits and
   /// so cannot queue another one.
   virtual bool serve_next() = 0;
+
+  /// When the next queued request starts, if no other is queued before; nothing when none waits.
+  virtual std::optional<Cycles> next_start() const = 0;
 
   /// 8-byte words that went through PEs' SRAM ports before `cycle` (which must be settled); monotonic.
   virtual std::uint64_t words_moved_before(Cycles cycle) const = 0;

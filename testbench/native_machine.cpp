@@ -28,8 +28,8 @@ void NativeMachine::sem_wait(cn::Semaphore semaphore) {
 
 void NativeMachine::start_transfer(const cn::Transfer& transfer) {
   const auto bytes = std::uint64_t(transfer.poly.size_bytes);
-  for (int pe = 0; pe < num_pes(); ++pe)
-    if (transfer.enabled[pe]) check_range(transfer.mono[pe], bytes, "transfer");
+  const int outside = cn::first_pe_not(transfer, num_pes(), [&](cn::MonoAddress place) { return is_within(place, bytes); });
+  if (outside >= 0) check_range(transfer.mono[outside], bytes, "transfer");
   cn::move_data(transfer, poly_memory(), mono_.data());
   ++semaphores_.at(std::size_t(transfer.done.index));
 }
@@ -45,7 +45,7 @@ void NativeMachine::write_mono_bytes(cn::MonoAddress to, const void* bytes, std:
 }
 
 void NativeMachine::check_range(cn::MonoAddress first, std::uint64_t bytes, const char* what) const {
-  if (first > mono_.size() || bytes > mono_.size() - first)
+  if (!is_within(first, bytes))
     throw cn::MachineFault(std::string(what) + " of " + std::to_string(bytes) + " bytes at " + std::to_string(first) +
                            " leaves mono memory of " + std::to_string(mono_.size()) + " bytes");
 }

@@ -32,6 +32,9 @@ class NativeMachine : public cn::Machine {
   void write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) override;
 
  private:
+  bool is_within(cn::MonoAddress first, std::uint64_t bytes) const {
+    return first <= mono_.size() && bytes <= mono_.size() - first;
+  }
   void check_range(cn::MonoAddress first, std::uint64_t bytes, const char* what) const;
 
   std::vector<std::uint8_t> mono_;

@@ -51,45 +51,67 @@ class ProgressRelay {
   bool interrupted_ = false;
 };
 
-/// Builds the firmware on a machine and runs it.
-void run_firmware(cn::Machine& machine, const RenderOptions& options, const MonoImage& image, ProgressRelay& relay,
-                  RenderResult& result) {
-  path_tracer::PathTracer tracer(machine, path_tracer::kernels(options.level), options.program, image.layout,
-                                 options.work);
-  result.poly_memory_map = machine.poly_memory().map();
-  tracer.run(std::ref(relay));
-  result.counts = tracer.counts();
-}
+/// What both kinds of run have around the machine.
+class Run {
+ public:
+  Run(const Scene& scene, const RenderOptions& options, const RenderProgress& progress)
+      : options_(options),
+        image_(checked_image(scene, options)),
+        relay_(scene, options.work, progress),
+        result_(Film(scene.film, film_scale(scene))) {}
 
-void finish(const ProgressRelay& relay, const HostTimer& timer, RenderResult& result) {
-  result.cpu_seconds = timer.cpu_seconds();
-  result.wall_seconds = timer.wall_seconds();
-  if (relay.interrupted()) throw RunError("interrupted; nothing was written");
-  require_no_rejected_samples(result.film);
-}
+  const MonoImage& image() const { return image_; }
+  RenderResult& result() { return result_; }
+
+  /// Builds the firmware on a machine and runs it to its end.
+  void firmware(cn::Machine& machine) {
+    path_tracer::PathTracer tracer(machine, path_tracer::kernels(options_.level), options_.program, image_.layout,
+                                   options_.work);
+    result_.poly_memory_map = machine.poly_memory().map();
+    tracer.run(std::ref(relay_));
+    result_.counts = tracer.counts();
+  }
+
+  RenderResult finish() {
+    result_.cpu_seconds = timer_.cpu_seconds();
+    result_.wall_seconds = timer_.wall_seconds();
+    if (relay_.interrupted()) throw RunError("interrupted; nothing was written");
+    require_no_rejected_samples(result_.film);
+    return std::move(result_);
+  }
+
+ private:
+  static MonoImage checked_image(const Scene& scene, const RenderOptions& options) {
+    path_tracer::validate(options.program);
+    MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
+    require_mono_memory(image, options.chip);
+    return image;
+  }
+
+  const RenderOptions& options_;
+  MonoImage image_;
+  ProgressRelay relay_;
+  RenderResult result_;
+  HostTimer timer_;
+};
 
 }  // namespace
 
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, const RenderProgress& progress) {
   return with_input_errors([&] {
-    path_tracer::validate(options.program);
-    const MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
-    require_mono_memory(image, options.chip);
-    RenderResult result(Film(scene.film, film_scale(scene)));
-    ProgressRelay relay(scene, options.work, progress);
-    const HostTimer timer;
-
+    Run run(scene, options, progress);
     model::Csx600 chip("csx600", options.chip);
-    HostPc host("host", chip, image, result.film);
+    HostPc host("host", chip, run.image(), run.result().film);
     std::optional<WaveFiles> waves;
     if (options.waves) waves.emplace(*options.waves, chip);
-    chip.control_unit.load([&](cn::Machine& machine) { run_firmware(machine, options, image, relay, result); });
+    chip.control_unit.load([&](cn::Machine& machine) { run.firmware(machine); });
     sc_core::sc_start();
     chip.control_unit.rethrow_failure();
-    if (!host.finished()) throw RunError("the chip stopped at cycle " + std::to_string(chip.control_unit.now()) +
-                                         " with its firmware waiting for the host");
-    result.chip = collect_statistics(chip, host.finished_cycle());
-    finish(relay, timer, result);
+    if (!host.finished())
+      throw RunError("the chip stopped at cycle " + std::to_string(chip.control_unit.now()) +
+                     " with its firmware waiting for the host");
+    run.result().chip = collect_statistics(chip, host.finished_cycle());
+    RenderResult result = run.finish();
     if (waves) waves->finish();
     return result;
   });
@@ -97,25 +119,19 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, co
 
 RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress) {
   return with_input_errors([&] {
-    path_tracer::validate(options.program);
-    const MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
-    require_mono_memory(image, options.chip);
-    RenderResult result(Film(scene.film, film_scale(scene)));
-    ProgressRelay relay(scene, options.work, progress);
-    const HostTimer timer;
-
-    NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, image.layout.total_bytes);
-    std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
-    ResultReader results(image.layout, result.film);
+    Run run(scene, options, progress);
+    const path_tracer::Layout& layout = run.image().layout;
+    NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, layout.total_bytes);
+    std::memcpy(machine.mono(), run.image().bytes.data(), run.image().bytes.size());
+    ResultReader results(layout, run.result().film);
     machine.on_signal(path_tracer::HostSemaphores::kResultsReady, [&] {
       results.fetch([&](cn::MonoAddress from, void* to, std::size_t bytes) {
         std::memcpy(to, machine.mono() + from, bytes);
       });
       machine.sem_signal(path_tracer::HostSemaphores::kResultsFree);
     });
-    run_firmware(machine, options, image, relay, result);
-    finish(relay, timer, result);
-    return result;
+    run.firmware(machine);
+    return run.finish();
   });
 }
 

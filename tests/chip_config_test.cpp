@@ -180,7 +180,7 @@ TEST(ParameterTable, DefaultsAreTheReferences) {
   EXPECT_EQ(cycles(InstructionClass::enable), 1);
   EXPECT_EQ(cycles(InstructionClass::sram), 96e9 / (96 * 250e6 * 4));
   EXPECT_EQ(cycles(InstructionClass::swazzle), 2);
-  EXPECT_EQ(config.control.instruction_cache_bytes, 2 * config.control.data_cache_bytes);
+  EXPECT_EQ(config.control.data_cache_bytes, 4096);
   EXPECT_EQ(config.control.cache_miss_cycles, 25);
   EXPECT_EQ(config.pio.arbitration, PioArbitration::reads_overtake_writes);
   EXPECT_FALSE(config.pio.consolidate_equal_addresses);
@@ -289,9 +289,6 @@ std::string validate_error(const std::vector<std::pair<std::string, std::string>
 TEST(Validate, ChecksWhatMustHoldBetweenParameters) {
   EXPECT_EQ(validate_error({{"control.data_cache_bytes", "4104"}}),
             "control.data_cache_bytes: found '4104'; allowed: a multiple of control.cache_line_bytes (32)");
-  EXPECT_EQ(
-      validate_error({{"control.instruction_cache_bytes", "72"}}),
-      "control.instruction_cache_bytes: found '72'; allowed: a multiple of control.cache_line_bytes (32)");
   EXPECT_EQ(validate_error({{"clear_connect.bytes_per_cycle", "65"}}),
             "clear_connect.packet_bytes: found '64'; allowed: at least clear_connect.bytes_per_cycle (65)");
   EXPECT_EQ(validate_error({{"ddr.page_bytes", "520"}}),

@@ -132,16 +132,21 @@ Results with_overlap(const ProgramConfig& config, int num_pes, double eagerness,
   trace(machine, image, config);
   while (serve()) {
   }
-  EXPECT_EQ(machine.under_way(), 0u) << "saves still under way at the end";
+  EXPECT_EQ(machine.under_way(), 0u);
+  for (int i = HostSemaphores::kResultsFree.index + 1; i < cn::Machine::kSemaphores; ++i)
+    EXPECT_EQ(machine.signals({i}), 0) << "nobody waited for a transfer of " << machine.semaphore_name({i});
   return host.results();
 }
 
 void expect_complete(const Results& results) {
   EXPECT_EQ(results.size(), std::size_t(8 * 6 * kSamples));
+  int lit = 0;
   for (const auto& [key, radiance] : results) {
     EXPECT_TRUE(key.first >= 0 && key.first < 48 && key.second >= 0 && key.second < kSamples);
     for (const double component : radiance) EXPECT_TRUE(component >= 0 && component < 1e6) << component;
+    lit += radiance[0] > 0;
   }
+  EXPECT_GT(lit, 20);
 }
 
 class Overlap : public testing::TestWithParam<Program> {};

@@ -10,8 +10,8 @@
 
 namespace cn {
 
-/// PEs that the host executes together. Eight doubles are one register of AVX-512, two of AVX2 and four of SSE2; wider
-/// strips spill, and operating on all PEs at once is three to twenty times slower (measured, README "Design").
+/// PEs that the host executes together. Eight doubles are one register of AVX-512, two of AVX2 and four of SSE2. Wider
+/// strips gain nothing (tests/strip_width_benchmark.cpp), and with narrow ones the array's width is a run-time number.
 inline constexpr int kStripLanes = 8;
 
 /// Native vector width of the level this file is compiled for.

@@ -25,9 +25,8 @@ void check_alignment(const Transfer& transfer, int num_pes) {
     if (transfer.mono.stride_bytes % 8 != 0) fault("stride", transfer.mono.stride_bytes);
     return;
   }
-  for (int pe = 0; pe < num_pes; ++pe)
-    if (transfer.enabled[pe] && transfer.mono[pe] % 8 != 0)
-      fault("mono address of PE " + std::to_string(pe), transfer.mono[pe]);
+  const int pe = first_pe_not(transfer, num_pes, [](MonoAddress place) { return place % 8 == 0; });
+  if (pe >= 0) fault("mono address of PE " + std::to_string(pe), transfer.mono[pe]);
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct RenderCommand {
   RenderOptions options;
   ChipOptions chip;
   LevelOption level;
+  std::string program = "full";
   std::string buffer = "both";
   bool native = false;
   std::string exr;
@@ -43,13 +44,14 @@ struct RenderCommand {
 
 /// "480x480".
 FilmSize parse_size(const std::string& text) {
-  FilmSize size;
+  long long width = 0;
+  long long height = 0;
   char end = 0;
-  const bool two_numbers = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &end) == 2;
-  const auto allowed = [](int side) { return side >= 1 && side <= kMaxFilmSide; };
-  if (!two_numbers || !allowed(size.width) || !allowed(size.height))
+  const bool two_numbers = std::sscanf(text.c_str(), "%lldx%lld%c", &width, &height, &end) == 2;
+  const auto allowed = [](long long side) { return side >= 1 && side <= kMaxFilmSide; };
+  if (!two_numbers || !allowed(width) || !allowed(height))
     throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " + std::to_string(kMaxFilmSide));
-  return size;
+  return {static_cast<int>(width), static_cast<int>(height)};
 }
 
 /// "first:last", either may be missing.
@@ -73,12 +75,27 @@ void parse_cycles(const std::string& text, WaveOptions& waves) {
 }
 
 void RenderCommand::require_writable_outputs() const {
-  for (const std::string& path : {exr, png, statistics})
-    if (!path.empty()) require_writable(path);
+  std::map<std::filesystem::path, std::string> options;
+  const std::pair<const char*, std::string> outputs[] = {
+      {"--exr", exr}, {"--png", png}, {"--stats", statistics}, {"--vcd", vcd}};
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) continue;
+    const auto [other, is_first] = options.emplace(std::filesystem::absolute(path).lexically_normal(), option);
+    if (!is_first)
+      throw InputError(std::string(option) + ": found '" + path + "', which " + other->second +
+                       " writes too; allowed is a file of its own");
+    if (path != vcd) require_writable(path);
+  }
+}
+
+path_tracer::Program program_named(const std::string& name) {
+  using path_tracer::Program;
+  return name == "segments" ? Program::segments : name == "direct" ? Program::direct : Program::full;
 }
 
 RenderRequest RenderCommand::make_request() const {
   RenderRequest request{scene, options, native};
+  request.options.program.program = program_named(program);
   request.options.chip = chip.chip();
   request.options.level = level.level();
   request.options.program.buffer_loads = buffer == "both" || buffer == "loads";
@@ -100,9 +117,6 @@ Scene RenderCommand::load() const {
   if (!size.empty()) film = parse_size(size);
   Scene loaded = load_scene(scene);
   if (film) loaded.film = *film;
-  if (loaded.degenerate_triangles > 0)
-    std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", scene.c_str(),
-                 std::size_t(loaded.degenerate_triangles));
   return loaded;
 }
 
@@ -128,6 +142,9 @@ void RenderCommand::run() {
                   : render_on_chip(loaded, request.options, progress);
   }();
   write_outputs(request, result);
+  if (loaded.degenerate_triangles > 0)
+    std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", scene.c_str(),
+                 loaded.degenerate_triangles);
   std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
               loaded.film.width, loaded.film.height, request.options.work.samples,
               render_statistics(request, result)["firmware"]["program"].get<std::string>().c_str(),
@@ -137,13 +154,10 @@ void RenderCommand::run() {
 }
 
 void add_firmware_options(CLI::App& command, RenderCommand& state) {
-  using path_tracer::Program;
   path_tracer::ProgramConfig& program = state.options.program;
-  const std::map<std::string, Program> programs = {
-      {"segments", Program::segments}, {"direct", Program::direct}, {"full", Program::full}};
-  command.add_option("--program", program.program, "What is timed: segments, direct or full")
-      ->transform(CLI::CheckedTransformer(programs))
-      ->default_str("full");
+  command.add_option("--program", state.program, "What is timed: segments, direct or full")
+      ->check(CLI::IsMember({"segments", "direct", "full"}))
+      ->capture_default_str();
   command.add_option("--n", program.n, "Blocks loaded ahead and saved behind, 0 to 8")->capture_default_str();
   command.add_option("--buffer", state.buffer, "What is n-buffered: loads, saves, both or none")
       ->check(CLI::IsMember({"loads", "saves", "both", "none"}))
@@ -153,7 +167,9 @@ void add_firmware_options(CLI::App& command, RenderCommand& state) {
   command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")->capture_default_str();
   command.add_option("--roulette-start", program.roulette_start, "Segments that a path lives without Russian roulette")
       ->capture_default_str();
-  command.add_option("--seed", program.seed, "Seed of the random numbers")->capture_default_str();
+  command.add_option("--seed", program.seed, "Seed of the random numbers")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 }
 
 }  // namespace

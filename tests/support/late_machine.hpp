@@ -81,7 +81,15 @@ class LateMachine : public cn::Machine {
  private:
   static constexpr int kGarbage = 0xa5;
 
+  void check_range(const cn::Transfer& transfer) const {
+    for (int pe = 0; pe < num_pes(); ++pe)
+      if (transfer.enabled[pe] && transfer.mono[pe] > mono_.size() - std::size_t(transfer.poly.size_bytes))
+        throw cn::MachineFault(semaphore_name(transfer.done) + ": PE " + std::to_string(pe) +
+                               " has the address " + std::to_string(transfer.mono[pe]));
+  }
+
   void spoil(const cn::Transfer& transfer) {
+    check_range(transfer);
     for (int pe = 0; pe < num_pes(); ++pe) {
       if (!transfer.enabled[pe]) continue;
       if (transfer.direction == cn::Direction::poly_to_mono) {
@@ -112,6 +120,7 @@ class LateMachine : public cn::Machine {
     return true;
   }
   void finish(std::deque<cn::Transfer>::iterator transfer) {
+    check_range(*transfer);
     cn::move_data(*transfer, poly_memory(), mono_.data());
     ++semaphores_[std::size_t(transfer->done.index)];
     pending_.erase(transfer);

@@ -1,0 +1,136 @@
+#include "model/pe_array.hpp"
+
+#include "tests/support/systemc_fixture.hpp"
+#include "tests/support/test_chip.hpp"
+
+namespace {
+
+using cn::InstructionClass;
+using cn::IssueTree;
+using test_support::test_chip;
+
+class PeArray : public test_support::SystemCFixture {};
+
+model::ChipConfig priced_chip() {
+  model::ChipConfig config = test_chip();
+  config.poly.cycles[std::size_t(InstructionClass::fp64_add)] = 4;
+  config.poly.cycles[std::size_t(InstructionClass::sram)] = 2;
+  config.poly.cycles[std::size_t(InstructionClass::mono)] = 3;
+  return config;
+}
+
+/// Eight PEs enter a loop, five stay for its second pass; a region inside it is reached by two.
+IssueTree loop() {
+  IssueTree tree;
+  IssueTree::Node& root = tree.root();
+  root.reached = true;
+  root.enabled_lanes = 8;
+  root.counts[InstructionClass::fp64_add] = 10;  // 40 cycles
+  root.regions.resize(1);
+  root.regions[0].resize(2);
+  IssueTree::Node& first = root.regions[0][0];
+  first.reached = true;
+  first.enabled_lanes = 8;
+  first.counts[InstructionClass::fp64_add] = 5;  // 20 cycles
+  IssueTree::Node& second = root.regions[0][1];
+  second.reached = true;
+  second.enabled_lanes = 5;
+  second.counts[InstructionClass::sram] = 5;  // 10 cycles
+  second.regions.resize(2);
+  second.regions[0].resize(1);  // nobody came here: what it holds does not count
+  second.regions[0][0].counts[InstructionClass::fp64_add] = 1000;
+  second.regions[1].resize(1);
+  second.regions[1][0].reached = true;
+  second.regions[1][0].enabled_lanes = 2;
+  second.regions[1][0].counts[InstructionClass::sram] = 15;  // 30 cycles
+  return tree;
+}
+
+TEST_F(PeArray, CostAddsUpTheNodesThatWereReached) {
+  const model::ChipConfig config = priced_chip();
+  model::PeArray array("pe_array", config);
+  const model::PeArray::Cost cost = array.retire("loop", loop());
+  EXPECT_EQ(cost.cycles, 100u);
+  EXPECT_EQ(cost.sram_cycles, 40u);
+}
+
+TEST_F(PeArray, CodeQualityScalesPolyInstructionsOnly) {
+  model::ChipConfig config = priced_chip();
+  config.poly.code_quality_factor = 1.25;
+  model::PeArray array("pe_array", config);
+  const model::PeArray::Cost cost = array.retire("loop", loop());
+  EXPECT_EQ(cost.cycles, 125u);
+  EXPECT_EQ(cost.sram_cycles, 50u);
+  IssueTree with_mono = loop();
+  with_mono.root().counts[InstructionClass::mono] = 50;
+  EXPECT_EQ(array.retire("loop", with_mono).cycles, 150u);
+  with_mono.root().counts[InstructionClass::mono] = 41;
+  EXPECT_EQ(array.retire("loop", with_mono).cycles, 125u);
+}
+
+TEST_F(PeArray, CostIsRoundedOnceAKernel) {
+  model::ChipConfig config = priced_chip();
+  config.poly.cycles[std::size_t(InstructionClass::fp64_add)] = 0.4;
+  model::PeArray array("pe_array", config);
+  IssueTree tree;
+  tree.root().reached = true;
+  tree.root().enabled_lanes = 8;
+  tree.root().counts[InstructionClass::fp64_add] = 6;
+  EXPECT_EQ(array.retire("kernel", tree).cycles, 2u);  // 2.4
+  tree.root().counts[InstructionClass::fp64_add] = 7;
+  EXPECT_EQ(array.retire("kernel", tree).cycles, 3u);  // 2.8
+}
+
+TEST_F(PeArray, EfficiencyWeighsPesByTheCyclesTheyWereEnabledIn) {
+  const model::ChipConfig config = priced_chip();
+  model::PeArray array("pe_array", config);
+  array.retire("loop", loop());
+  // (60 cycles x 8 + 10 x 5 + 30 x 2) / (100 x 8)
+  EXPECT_DOUBLE_EQ(array.kernels()[0].simd_efficiency(array.num_pes()), 590.0 / 800.0);
+  EXPECT_DOUBLE_EQ(array.total().simd_efficiency(8), 590.0 / 800.0);
+}
+
+TEST_F(PeArray, EfficiencyIsNotChangedByCodeQualityOrMonoInstructions) {
+  model::ChipConfig config = priced_chip();
+  config.poly.code_quality_factor = 3;
+  model::PeArray array("pe_array", config);
+  IssueTree with_mono = loop();
+  with_mono.root().counts[InstructionClass::mono] = 100000;
+  array.retire("loop", with_mono);
+  EXPECT_DOUBLE_EQ(array.total().simd_efficiency(8), 590.0 / 800.0);
+}
+
+TEST_F(PeArray, EfficiencyOfNothingIsOne) {
+  EXPECT_DOUBLE_EQ(model::KernelStatistics{}.simd_efficiency(8), 1.0);
+}
+
+TEST_F(PeArray, CountsByKernelInTheOrderOfTheirFirstRun) {
+  const model::ChipConfig config = priced_chip();
+  model::PeArray array("pe_array", config);
+  static constexpr const char* kLoop = "loop";
+  static constexpr const char* kShort = "short";
+  IssueTree tree;
+  tree.root().reached = true;
+  tree.root().enabled_lanes = 4;
+  tree.root().counts[InstructionClass::sram] = 3;
+  array.retire(kLoop, loop());
+  array.retire(kShort, tree);
+  array.retire(kLoop, loop());
+  ASSERT_EQ(array.kernels().size(), 2u);
+  const model::KernelStatistics& of_loop = array.kernels()[0];
+  EXPECT_EQ(of_loop.name, "loop");
+  EXPECT_EQ(of_loop.runs, 2u);
+  EXPECT_EQ(of_loop.cycles, 200u);
+  EXPECT_EQ(of_loop.issued[InstructionClass::fp64_add], 30u);
+  EXPECT_EQ(of_loop.issued[InstructionClass::sram], 40u);
+  EXPECT_EQ(array.kernels()[1].name, "short");
+  EXPECT_EQ(array.kernels()[1].cycles, 6u);
+  EXPECT_DOUBLE_EQ(array.kernels()[1].simd_efficiency(8), 0.5);
+  const model::KernelStatistics total = array.total();
+  EXPECT_EQ(total.runs, 3u);
+  EXPECT_EQ(total.cycles, 206u);
+  EXPECT_EQ(total.issued[InstructionClass::sram], 43u);
+  EXPECT_DOUBLE_EQ(total.simd_efficiency(8), (2 * 590.0 + 24.0) / (2 * 800.0 + 48.0));
+}
+
+}  // namespace

@@ -318,7 +318,7 @@ const std::vector<ParameterInfo>& parameter_table() {
 const std::vector<ParameterSource>& parameter_sources() {
   static const std::vector<ParameterSource> sources = {
       {"reference",
-       "the project's note on the CSX600, reference/csx600.md: defaults where no source is readable"},
+       "the project's own collection of public facts, kept apart from the code; defaults where nothing is public"},
       {"paper", "Coulthurst et al., Parallel Path Tracing using Incoherent Path-Atom Binning"},
       {"S1", "ClearSpeed: Technology, http://www.clearspeed.com/acceleration/technology/"},
       {"S3", "ClearSpeed SDK Reference Manual 3.1, 06-RM-1600 rev 2.B, p. 163"},

@@ -1,0 +1,215 @@
+// Bad input: exit code 2 (1 for a run that failed), one line that names what is wrong, and nothing left behind.
+
+#include <unistd.h>
+
+#include <functional>
+#include <regex>
+
+#include "tests/support/command_line.hpp"
+
+namespace {
+
+using test_support::CommandResult;
+using test_support::SceneFiles;
+using Words = std::vector<std::string>;
+
+const std::string kCornellBox = std::string(CSX600_SCENES_DIR) + "/cornell_box";
+
+class CommandLineErrors : public test_support::CommandLineFixture {
+ protected:
+  /// The one line; it must have all `parts`.
+  std::string expect_error(const Words& arguments, const Words& parts, int exit_code = 2) {
+    std::string command;
+    for (const std::string& word : arguments) command += word + " ";
+    SCOPED_TRACE(command);
+    const Words before = files();
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(files(), before) << "files left behind";
+    const Words lines = result.error_lines();
+    EXPECT_EQ(lines.size(), 1u) << result.error;
+    if (lines.empty()) return "";
+    EXPECT_EQ(lines[0].rfind("csx600: ", 0), 0u) << lines[0];
+    for (const std::string& part : parts) EXPECT_NE(lines[0].find(part), std::string::npos) << part << " in: " << lines[0];
+    return lines[0];
+  }
+  /// Of rendering the Cornell box with every output asked for.
+  void expect_render_error(const Words& arguments, const Words& parts, int exit_code = 2) {
+    Words all = {"render", kCornellBox, "--exr", "a.exr", "--png", "a.png", "--stats", "a.json"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    expect_error(all, parts, exit_code);
+  }
+  void expect_scene_error(const SceneFiles& scene, const Words& parts) {
+    write("scene/scene.toml", scene.toml);
+    write("scene/mesh.obj", scene.obj);
+    write("scene/mesh.mtl", scene.mtl);
+    for (const Words& how : {Words{}, Words{"--native"}}) {
+      Words arguments = {"render", "scene", "--exr", "a.exr", "--samples", "1"};
+      arguments.insert(arguments.end(), how.begin(), how.end());
+      expect_error(arguments, parts);
+    }
+  }
+  static std::string replaced(const std::string& text, const std::string& from, const std::string& to) {
+    EXPECT_NE(text.find(from), std::string::npos);
+    return std::regex_replace(text, std::regex(from), to);
+  }
+};
+
+TEST_F(CommandLineErrors, Usage) {
+  expect_error({}, {"subcommand"});
+  expect_error({"paint"}, {"--help"});
+  expect_error({"render"}, {"scene is required"});
+  expect_render_error({"--colour", "red"}, {"--colour"});
+  expect_render_error({"--samples"}, {"--samples"});
+  expect_render_error({"--samples", "0"}, {"--samples", "0", "1 to"});
+  expect_render_error({"--samples", "many"}, {"--samples", "many"});
+  expect_render_error({"--program", "quick"}, {"--program", "quick", "segments", "direct", "full"});
+  expect_render_error({"--buffer", "all"}, {"--buffer", "all", "loads", "saves", "both", "none"});
+  expect_render_error({"--level", "v9"}, {"--level", "v9", "v2"});
+  expect_render_error({"--seed", "-1"}, {"--seed", "-1"});
+  expect_error({"reproduce", kCornellBox, "--samples", "0"}, {"--samples"});
+}
+
+TEST_F(CommandLineErrors, Size) {
+  for (const char* size : {"0x0", "0x5", "5x0", "-1x5", "5", "5x", "x5", "5x5x5", "axb", "16385x1", "4294967297x1", "5 x 5",
+                           "99999999999999999999x1"})
+    expect_render_error({"--size", size}, {"--size", std::string("'") + size + "'", "1 to 16384"});
+}
+
+TEST_F(CommandLineErrors, Firmware) {
+  expect_render_error({"--n", "9"}, {"n: found 9", "0 to 8"});
+  expect_render_error({"--n", "-1"}, {"n: found -1", "0 to 8"});
+  expect_render_error({"--n", "4", "--bin-blocks", "3"}, {"n: found 4", "bin length", "3 blocks"});
+  expect_render_error({"--bin-blocks", "0"}, {"found 0", "1 or more"});
+  expect_render_error({"--slot-vertices", "6"}, {"found 6", "multiple of 4"});
+  expect_render_error({"--roulette-start", "-3"}, {"roulette", "-3"});
+}
+
+TEST_F(CommandLineErrors, Chip) {
+  expect_render_error({"--chip", "csx601"}, {"'csx601'", "csx600,", "paper", ".toml"});
+  expect_render_error({"--chip", "none.toml"}, {"none.toml"});
+  expect_render_error({"--set", "pio.setup_cycle=3"}, {"--set", "'pio.setup_cycle'", "pio.setup_cycles"});
+  expect_render_error({"--set", "pio.setup_cycles"}, {"--set", "'pio.setup_cycles'", "key=value"});
+  expect_render_error({"--set", "pio.setup_cycles=many"}, {"--set", "pio.setup_cycles", "'many'"});
+  expect_render_error({"--set", "chip.pes=97"}, {"--set", "chip.pes", "97"});
+  write("chip.toml", "[pio]\nsetup_cycle = 3\n");
+  expect_render_error({"--chip", "chip.toml"}, {"chip.toml:2", "pio.setup_cycle"});
+  write("chip.toml", "[pio\n");
+  expect_render_error({"--chip", "chip.toml"}, {"chip.toml:1"});
+  expect_error({"params", "--chip", "csx601", "--json", "a.json"}, {"'csx601'"});
+  expect_error({"reproduce", kCornellBox, "--set", "a.b=1", "--json", "a.json"}, {"'a.b'"});
+}
+
+TEST_F(CommandLineErrors, Memory) {
+  for (const Words& how : {Words{}, Words{"--native"}}) {
+    Words arguments = {"--set", "ddr.size_bytes=1048576"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    expect_render_error(arguments, {"bytes of mono memory", "ddr.size_bytes", "1048576"});
+  }
+}
+
+TEST_F(CommandLineErrors, PolySramOverflowShowsTheBufferMap) {
+  for (const Words& how : {Words{"--n", "8", "--set", "poly.sram_bytes=4096"}, Words{"--bin-blocks", "400"},
+                           Words{"--bin-blocks", "400", "--native"}, Words{"--bin-blocks", "400", "--vcd", "a.vcd"}}) {
+    Words arguments = {"render", kCornellBox, "--size", "8x6", "--exr", "a.exr"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(files(), Words{});
+    const Words lines = result.error_lines();
+    ASSERT_GE(lines.size(), 4u) << result.error;
+    EXPECT_TRUE(std::regex_search(
+        lines[0], std::regex("^csx600: poly SRAM overflow: buffer '[^']+' needs [0-9]+ bytes a PE, [0-9]+ of [0-9]+ are free")))
+        << lines[0];
+    EXPECT_TRUE(std::regex_search(lines[1], std::regex("offset +bytes +buffer"))) << lines[1];
+    for (std::size_t i = 2; i < lines.size(); ++i)
+      EXPECT_TRUE(std::regex_search(lines[i], std::regex("^ *[0-9]+ +[0-9]+  .+"))) << lines[i];
+    EXPECT_NE(result.error.find("stack"), std::string::npos);
+    EXPECT_NE(result.error.find("(free)"), std::string::npos);
+  }
+}
+
+TEST_F(CommandLineErrors, MissingFiles) {
+  expect_error({"render", "nowhere", "--exr", "a.exr"}, {"nowhere"});
+  expect_error({"render", "nowhere.toml"}, {"nowhere.toml"});
+  expect_error({"reproduce", "nowhere", "--json", "a.json"}, {"nowhere"});
+  SceneFiles scene;
+  scene.toml = replaced(scene.toml, "mesh.obj", "none.obj");
+  expect_scene_error(scene, {"none.obj"});
+  scene = {};
+  scene.obj = replaced(scene.obj, "mtllib mesh.mtl", "mtllib none.mtl");
+  expect_scene_error(scene, {"none.mtl", "mesh.obj"});
+}
+
+TEST_F(CommandLineErrors, BrokenScene) {
+  struct Case {
+    const char* name;
+    std::function<void(SceneFiles&)> breaks;
+    Words parts;
+  };
+  const Case cases[] = {
+      {"TOML", [](SceneFiles& s) { s.toml += "x = [\n"; }, {"scene.toml", "TOML"}},
+      {"no camera", [](SceneFiles& s) { s.toml = "[film]\nwidth = 8\n[[mesh]]\nfile = \"mesh.obj\"\n"; },
+       {"scene.toml", "camera"}},
+      {"unknown key", [](SceneFiles& s) { s.toml = replaced(s.toml, "width", "widht"); }, {"scene.toml:6", "film.widht"}},
+      {"empty film", [](SceneFiles& s) { s.toml = replaced(s.toml, "width = 8", "width = 0"); },
+       {"scene.toml:6", "film.width", "found 0"}},
+      {"text for a number", [](SceneFiles& s) { s.toml = replaced(s.toml, "= 40", "= \"wide\""); },
+       {"scene.toml:4", "vertical_fov_degrees"}},
+      {"no mesh", [](SceneFiles& s) { s.toml = s.toml.substr(0, s.toml.find("[[mesh]]")); }, {"scene.toml", "mesh"}},
+      {"no light", [](SceneFiles& s) { s.mtl = replaced(s.mtl, "Ke 1 2 3", "Ke 0 0 0"); }, {"light", "Ke"}},
+      {"vertex index", [](SceneFiles& s) { s.obj = replaced(s.obj, "f 1 2 3", "f 1 2 9"); }, {"mesh.obj", "9", "1 to 3"}},
+      {"vertex", [](SceneFiles& s) { s.obj = replaced(s.obj, "v 0 1 0", "v 0 one 0"); }, {"mesh.obj:4", "one"}},
+      {"material", [](SceneFiles& s) { s.obj = replaced(s.obj, "usemtl light", "usemtl lamp"); }, {"mesh.obj", "lamp"}},
+      {"no faces", [](SceneFiles& s) { s.obj = replaced(s.obj, "f 1 2 3", ""); }, {"mesh"}},
+  };
+  for (const Case& broken : cases) {
+    SCOPED_TRACE(broken.name);
+    SceneFiles scene;
+    broken.breaks(scene);
+    expect_scene_error(scene, broken.parts);
+  }
+}
+
+TEST_F(CommandLineErrors, NotesDoNotGoBeforeAnError) {
+  SceneFiles scene;
+  scene.obj += "f 1 1 2\n";
+  write("scene.toml", scene.toml);
+  write("mesh.obj", scene.obj);
+  write("mesh.mtl", scene.mtl);
+  expect_error({"render", "scene.toml", "--n", "9"}, {"n: found 9"});
+}
+
+TEST_F(CommandLineErrors, UnwritableOutputs) {
+  for (const char* option : {"--exr", "--png", "--stats", "--json", "--vcd"}) {
+    expect_error({"render", kCornellBox, option, "none/a.vcd"}, {"none/a.vcd"});
+    expect_error({"render", kCornellBox, option, "/dev/full.vcd/a.vcd"}, {"/dev/full.vcd"});
+  }
+  expect_error({"render", kCornellBox, "--exr", "."}, {"directory"});
+  expect_error({"render", kCornellBox, "--png", "/dev/null"}, {"/dev/null"});
+  expect_error({"params", "--json", "none/a.json"}, {"none/a.json"});
+  expect_error({"reproduce", kCornellBox, "--json", "none/a.json"}, {"none/a.json"});
+}
+
+TEST_F(CommandLineErrors, OutputsInOneFile) {
+  expect_error({"render", kCornellBox, "--exr", "a", "--png", "./a"}, {"--exr", "--png", "./a"});
+  expect_error({"render", kCornellBox, "--vcd", "a.vcd", "--stats", "a.vcd"}, {"--vcd", "--stats"});
+}
+
+TEST_F(CommandLineErrors, Waves) {
+  expect_render_error({"--vcd", "a.vcd", "--native"}, {"--vcd", "--native"});
+  expect_render_error({"--vcd", "a.txt"}, {"--vcd", "a.txt", ".vcd"});
+  expect_render_error({"--vcd-cycles", "1:2"}, {"--vcd-cycles", "--vcd"});
+  for (const char* cycles : {"5", "5:2", "5:5", "a:b", "-1:5", "1:2:3", "1:-2"})
+    expect_render_error({"--vcd", "a.vcd", "--vcd-cycles", cycles}, {"--vcd-cycles", cycles});
+}
+
+TEST_F(CommandLineErrors, WindowAfterTheRunFailsIt) {
+  expect_error({"render", kCornellBox, "--size", "8x6", "--samples", "1", "--exr", "a.exr", "--vcd", "a.vcd", "--vcd-cycles",
+                "999999999999:"},
+               {"a", "window", "999999999999"}, 1);
+}
+
+}  // namespace

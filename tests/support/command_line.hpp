@@ -1,0 +1,53 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace test_support {
+
+/// What a run of the program left.
+struct CommandResult {
+  int exit_code = -1;  ///< -1 when a signal ended it
+  std::string out;
+  std::string error;
+
+  std::vector<std::string> error_lines() const;
+};
+
+/// Runs build's csx600 in an empty directory of its own, which is removed at the end.
+class CommandLineFixture : public testing::Test {
+ protected:
+  CommandLineFixture();
+  ~CommandLineFixture() override;
+
+  CommandResult run(const std::vector<std::string>& arguments);
+
+  /// Starts the program; its output goes to files outside the directory.
+  pid_t start(const std::vector<std::string>& arguments);
+  CommandResult finish(pid_t child);
+
+  void write(const std::string& name, const std::string& text) const;
+  std::string read(const std::string& name) const;
+  /// Everything in the directory, sorted.
+  std::vector<std::string> files() const;
+
+  const std::filesystem::path& directory() const { return directory_; }
+
+ private:
+  std::filesystem::path directory_;
+};
+
+/// A triangle that emits, seen from the front, as scene.toml, mesh.obj and mesh.mtl.
+struct SceneFiles {
+  std::string toml =
+      "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nvertical_fov_degrees = 40\n"
+      "[film]\nwidth = 8\nheight = 6\n[[mesh]]\nfile = \"mesh.obj\"\n";
+  std::string obj = "mtllib mesh.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl light\nf 1 2 3\n";
+  std::string mtl = "newmtl light\nKd 0.5 0.5 0.5\nKe 1 2 3\n";
+};
+
+}  // namespace test_support

@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 source .ci/prepare.sh
 
-prepare_build release
+prepare_build release csx600
 mkdir -p out
 
 echo "Rendering scenes/cornell_box at 480 x 480 on the model of the chip ..."

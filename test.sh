@@ -4,5 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")"
 source .ci/prepare.sh
 
-prepare_build release
+prepare_build release all
 ctest --preset release --parallel "$(nproc)" "$@"

@@ -30,9 +30,9 @@ install_missing_packages() {
     > /dev/null
 }
 
-# prepare_build PRESET: packages, configuration, build. Quick when nothing changed.
+# prepare_build PRESET TARGET: packages, configuration, build. Quick when nothing changed.
 prepare_build() {
   install_missing_packages
   [ -f "build/$1/build.ninja" ] || cmake --preset "$1" > /dev/null
-  cmake --build --preset "$1"
+  cmake --build --preset "$1" --target "$2"
 }

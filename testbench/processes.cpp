@@ -1,5 +1,6 @@
 #include "testbench/processes.hpp"
 
+#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -59,6 +60,22 @@ std::string read_all(int pipe) {
   _exit(status);
 }
 
+using Children = std::map<pid_t, Child>;
+
+/// Waits until a child writes its result or ends.
+Children::const_iterator first_with_result(const Children& running) {
+  std::vector<pollfd> pipes;
+  for (const auto& [child, info] : running) pipes.push_back({info.pipe, POLLIN, 0});
+  while (poll(pipes.data(), pipes.size(), -1) < 0 && errno == EINTR) {
+  }
+  auto found = running.begin();
+  for (const pollfd& pipe : pipes) {
+    if (pipe.revents != 0) break;
+    ++found;
+  }
+  return found != running.end() ? found : running.begin();
+}
+
 std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
   int ends[2];
   if (pipe(ends) != 0) throw RunError(std::string("cannot make a pipe: ") + std::strerror(errno));
@@ -78,7 +95,7 @@ std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,
                                           const std::function<void(int finished)>& done) {
   std::vector<std::string> results(jobs.size());
-  std::map<pid_t, Child> running;
+  Children running;
   std::size_t next = 0;
   int finished = 0;
   int failure = succeeded;
@@ -88,8 +105,8 @@ std::vector<std::string> run_in_processes(const std::vector<std::function<std::s
       const auto [child, pipe] = start_child(jobs[next]);
       running[child] = {next++, pipe};
     }
-    // Results are shorter than a pipe's buffer or are read here before the child can end: read, then reap.
-    const auto [child, info] = *running.begin();
+    // A result may be longer than a pipe's buffer, so it is read before the child can end, and reaped then.
+    const auto [child, info] = *first_with_result(running);
     std::string text = read_all(info.pipe);
     close(info.pipe);
     int status = 0;

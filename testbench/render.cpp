@@ -21,7 +21,8 @@ auto with_input_errors(Work&& work) {
   } catch (const path_tracer::ProgramError& error) {
     throw InputError(error.what());
   } catch (const cn::PolyMemoryOverflow& error) {
-    throw InputError(std::string(error.what()) + "; buffers of a PE:\n" + error.map());
+    const std::string map = error.map().substr(0, error.map().find_last_not_of('\n') + 1);
+    throw InputError(std::string(error.what()) + "; buffers of a PE:\n" + map);
   } catch (const cn::MachineFault& fault) {
     throw RunError(fault.what());
   }

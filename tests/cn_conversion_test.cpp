@@ -70,6 +70,32 @@ TEST_F(CnConversion, ConvertsBetweenAllFormats) {
   expect_converts_to_all<std::uint64_t>();
 }
 
+/// C++ leaves this open, and so did the x86-64 levels: what a PE gets must not depend on the host.
+TEST_F(CnConversion, NumbersOutOfRangeGiveTheSameBitsAtEveryLevel) {
+  const std::vector<std::pair<double, std::uint32_t>> known{{-1.5, 0xffffffffu},
+                                                            {-2.0, 0xfffffffeu},
+                                                            {5e9, 0x2a05f200u},
+                                                            {-3e9, 0x4d2fa200u},
+                                                            {1e30, 0u},
+                                                            {-1e30, 0u},
+                                                            {std::numeric_limits<double>::quiet_NaN(), 0u}};
+  PerPe<double> from = per_pe<double>();
+  for (std::size_t i = 0; i < known.size(); ++i) from[i] = known[i].first;
+  PerPe<std::uint32_t> unsigned_words = per_pe<std::uint32_t>();
+  PerPe<std::int32_t> signed_words = per_pe<std::int32_t>();
+  PerPe<std::int16_t> half_words = per_pe<std::int16_t>();
+  run([&] {
+    store(unsigned_words, cn::convert<std::uint32_t>(load(from)));
+    store(signed_words, cn::convert<std::int32_t>(load(from)));
+    store(half_words, cn::convert<std::int16_t>(load(from)));
+  });
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    EXPECT_EQ(unsigned_words[i], known[i].second) << known[i].first;
+    EXPECT_EQ(signed_words[i], static_cast<std::int32_t>(known[i].second)) << known[i].first;
+    EXPECT_EQ(half_words[i], static_cast<std::int16_t>(known[i].second)) << known[i].first;
+  }
+}
+
 TEST_F(CnConversion, ReinterpretsBitsForFree) {
   PerPe<double> doubles = per_pe<double>();
   PerPe<std::int32_t> words = per_pe<std::int32_t>();

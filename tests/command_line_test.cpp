@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
@@ -141,13 +142,27 @@ TEST_F(CommandLine, TrianglesWithoutAreaAreLeftOutWithANote) {
   EXPECT_EQ(result.error, "note: scene.toml: 1 triangles without area were left out\n");
 }
 
+/// By what Linux says of the process; then a little longer, into the run.
+void wait_until_interrupts_are_caught(pid_t child) {
+  constexpr unsigned long kInterrupt = 1ul << (SIGINT - 1);
+  unsigned long caught = 0;
+  for (int attempt = 0; (caught & kInterrupt) == 0; ++attempt) {
+    ASSERT_LT(attempt, 2000) << "it has ended";
+    std::ifstream status("/proc/" + std::to_string(child) + "/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.rfind("SigCgt:", 0) == 0) caught = std::stoul(line.substr(7), nullptr, 16);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
 TEST_F(CommandLine, InterruptEndsARunCleanly) {
   for (const std::vector<std::string>& how : {Files{}, Files{"--native"}, Files{"--vcd", "a.vcd"}}) {
     Files arguments = {"render", kCornellBox, "--samples", "1000000", "--exr", "a.exr", "--png", "a.png", "--stats",
                        "a.json"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     const pid_t child = start(arguments);
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    wait_until_interrupts_are_caught(child);
     ASSERT_EQ(kill(child, SIGINT), 0);
     const CommandResult result = finish(child);
     EXPECT_EQ(result.exit_code, 1);

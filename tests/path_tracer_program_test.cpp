@@ -55,7 +55,7 @@ TEST(ProgramConfigTest, ErrorsNameArgumentValueAndWhatIsAllowed) {
   EXPECT_EQ(error_of(with(&ProgramConfig::n, -1)), "n: found -1, allowed is 0 to 8");
   EXPECT_EQ(error_of(with(&ProgramConfig::n, 9)), "n: found 9, allowed is 0 to 8");
   EXPECT_EQ(error_of(with(&ProgramConfig::bin_blocks, 0)),
-            "bin length: found 0 blocks, allowed is 1 or more");
+            "bin length: found 0 blocks, allowed is 1 to 65536");
   ProgramConfig config;
   config.n = 5;
   config.bin_blocks = 4;
@@ -63,7 +63,7 @@ TEST(ProgramConfigTest, ErrorsNameArgumentValueAndWhatIsAllowed) {
   for (const int vertices : {-4, 0, 2, 6, 17})
     EXPECT_EQ(
         error_of(with(&ProgramConfig::slot_vertices, vertices)),
-        "vertices a path slot: found " + std::to_string(vertices) + ", allowed is a positive multiple of 4");
+        "vertices a path slot: found " + std::to_string(vertices) + ", allowed is a positive multiple of 4 up to 4096");
   EXPECT_EQ(error_of(with(&ProgramConfig::roulette_start, -1)),
             "roulette start: found -1, allowed is 0 or more segments");
   for (const double survival : {0.0, 1.0, -0.5, std::numeric_limits<double>::quiet_NaN()})

@@ -82,6 +82,7 @@ class Machine {
   }
 
   /// From here on nothing costs time, until timed(true): for work that a timed program leaves to others.
+  /// It sees the data of every transfer started before it, waited for or not, and does not use up their signals.
   virtual void timed(bool on) = 0;
 
  protected:

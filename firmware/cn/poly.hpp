@@ -230,7 +230,12 @@ inline poly<To> convert(const poly<From>& from) {
         each_chunk<std::uint64_t>([&](int i) { return from.lanes().chunk[i] | kTwoTo52Bits; }));
     return poly<double>(each_chunk<double>([&](int i) { return biased.chunk[i] - 0x1p52; }));
   } else {
-    return poly<To>(wrap_lanes<To>(each_lane<ToLane>([&](int i) { return static_cast<ToLane>(from.lanes()[i]); })));
+    // Narrow numbers go through the signed 64-bit format, whose conversion is one instruction at every x86-64 level:
+    // out of range, too, all levels give the same bits. That of unsigned ones differs between AVX-512 and the others.
+    using Through = std::conditional_t<std::is_floating_point_v<From> && std::is_integral_v<To> && sizeof(To) < 8,
+                                       std::int64_t, ToLane>;
+    return poly<To>(wrap_lanes<To>(each_lane<ToLane>(
+        [&](int i) { return static_cast<ToLane>(static_cast<Through>(from.lanes()[i])); })));
   }
 }
 

@@ -18,6 +18,10 @@ enum class Program : std::uint8_t {
 
 inline constexpr int kMaxBuffers = 8;
 
+/// Far beyond what fits the chip; so that slot numbers stay within 32 bits.
+inline constexpr int kMaxBinBlocks = 65536;
+inline constexpr int kMaxSlotVertices = 4096;
+
 /// Vertices that one step of the radiance stage loads a path.
 inline constexpr int kVerticesPerLoad = 4;
 

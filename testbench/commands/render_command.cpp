@@ -77,12 +77,12 @@ void parse_cycles(const std::string& text, WaveOptions& waves) {
 }
 
 void RenderCommand::require_writable_outputs() const {
-  std::map<std::filesystem::path, std::string> options;
+  std::map<std::filesystem::path, std::string> option_of;
   const std::pair<const char*, std::string> outputs[] = {
       {"--exr", exr}, {"--png", png}, {"--stats", statistics}, {"--vcd", vcd}};
   for (const auto& [option, path] : outputs) {
     if (path.empty()) continue;
-    const auto [other, is_first] = options.emplace(std::filesystem::absolute(path).lexically_normal(), option);
+    const auto [other, is_first] = option_of.emplace(std::filesystem::absolute(path).lexically_normal(), option);
     if (!is_first)
       throw InputError(std::string(option) + ": found '" + path + "', which " + other->second +
                        " writes too; allowed is a file of its own");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "testbench/scene/scene_file.hpp"
 
@@ -155,6 +156,17 @@ Scene light_from_above(const PlaneAndLight& values, FilmSize film) {
   Scene scene = named("light_from_above", film);
   add_plane_and_light(scene, values);
   scene.camera = looking_at_light(6.0);
+  return scene;
+}
+
+Scene plane_over_light(const PlaneAndLight& values, FilmSize film) {
+  Scene scene = named("plane_over_light", film);
+  add_plane_and_light(scene, values);
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (glm::dvec3& vertex : scene.triangles[i].vertex) vertex.y = 2 * PlaneAndLight::kLightHeight;
+    std::swap(scene.triangles[i].vertex[1], scene.triangles[i].vertex[2]);
+  }
+  scene.camera = looking({0.2, 3.0, -1.5}, {0.5, 4.0, 0.3}, {0, 1, 0}, 50);
   return scene;
 }
 

@@ -34,6 +34,8 @@ Scene plane_under_light(const PlaneAndLight& values, FilmSize film);
 Scene light_from_below(const PlaneAndLight& values, FilmSize film);
 /// Looks down at the light's back, likewise; around it is the plane.
 Scene light_from_above(const PlaneAndLight& values, FilmSize film);
+/// The plane turned over and put above the light: between the two, looking up at it. Nothing lights it.
+Scene plane_over_light(const PlaneAndLight& values, FilmSize film);
 
 /// A grey sphere of triangles, 4 * rings * (rings - 1) of them, in an open box under a square light.
 Scene sphere_under_light(int rings, FilmSize film);

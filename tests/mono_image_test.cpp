@@ -1,0 +1,247 @@
+#include "testbench/mono_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "testbench/error.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace {
+
+using path_tracer::CameraRecord;
+using path_tracer::LightRecord;
+using path_tracer::SurfaceRecord;
+using path_tracer::TriangleRecord;
+using testbench::make_mono_image;
+using testbench::MonoImage;
+using testbench::number_faces;
+using testbench::Scene;
+using testbench::Triangle;
+
+glm::dvec3 vector(const cn::vec3<double>& v) {
+  return {v.x, v.y, v.z};
+}
+
+template <class Record>
+Record record(const MonoImage& image, cn::MonoPointer<Record> first, int index = 0) {
+  Record result;
+  std::memcpy(&result, image.bytes.data() + (first + std::uint64_t(index)).address, sizeof(Record));
+  return result;
+}
+
+/// Two lights of areas 2 and 1 and of radiances 3 and 12 (sums of channels), and a dark triangle between them.
+Scene three_triangles() {
+  Scene scene;
+  scene.name = "three";
+  scene.film = {6, 4};
+  scene.camera.position = {1, 2, 3};
+  scene.camera.vertical_field_of_view_radians = 0.8;
+  scene.materials = {{"dark", {0.1, 0.2, 0.3}, {0, 0, 0}}, {"dim", {0, 0, 0}, {1, 1, 1}}, {"bright", {0.5, 0, 0}, {3, 4, 5}}};
+  scene.triangles = {{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, 1},
+                     {{{0, 0, 5}, {1, 0, 5}, {0, 1, 5}}, 0},
+                     {{{0, 7, 0}, {0, 7, 2}, {1, 7, 0}}, 2}};
+  return scene;
+}
+
+TEST(MonoImage, HoldsTrianglesAndSurfacesInTheScenesOrder) {
+  const Scene scene = three_triangles();
+  const MonoImage image = make_mono_image(scene, 96, {});
+  ASSERT_EQ(image.layout.triangle_count, 3);
+  for (int i = 0; i < 3; ++i) {
+    const Triangle& triangle = scene.triangles[std::size_t(i)];
+    const testbench::Material& material = scene.materials[std::size_t(triangle.material)];
+    const auto in_image = record(image, image.layout.triangles, i);
+    EXPECT_EQ(vector(in_image.vertex), triangle.vertex[0]);
+    EXPECT_EQ(vector(in_image.edge1), triangle.vertex[1] - triangle.vertex[0]);
+    EXPECT_EQ(vector(in_image.edge2), triangle.vertex[2] - triangle.vertex[0]);
+    EXPECT_EQ(in_image.face, i);
+    const auto surface = record(image, image.layout.surfaces, i);
+    EXPECT_EQ(vector(surface.reflectance), material.reflectance);
+    EXPECT_EQ(vector(surface.emission), material.emission);
+    EXPECT_EQ(surface.face, i);
+  }
+  EXPECT_EQ(vector(record(image, image.layout.surfaces, 1).normal), glm::dvec3(0, 0, 1));
+  EXPECT_EQ(vector(record(image, image.layout.surfaces, 2).normal), glm::dvec3(0, 1, 0));
+}
+
+TEST(MonoImage, LightsAreChosenByTheirPower) {
+  const MonoImage image = make_mono_image(three_triangles(), 96, {});
+  ASSERT_EQ(image.layout.light_count, 2);
+  // Area x sum of channels: 2 x 3 = 6 and 1 x 12 = 12.
+  EXPECT_DOUBLE_EQ(record(image, image.layout.light_cdf, 0), 6.0 / 18.0);
+  EXPECT_EQ(record(image, image.layout.light_cdf, 1), 1.0);
+  const auto dim = record(image, image.layout.lights, 0);
+  EXPECT_EQ(vector(dim.vertex), glm::dvec3(0, 0, 0));
+  EXPECT_EQ(vector(dim.edge1), glm::dvec3(2, 0, 0));
+  EXPECT_EQ(vector(dim.edge2), glm::dvec3(0, 2, 0));
+  EXPECT_EQ(vector(dim.normal), glm::dvec3(0, 0, 1));
+  EXPECT_EQ(dim.face, 0);
+  EXPECT_NEAR(dim.emission_over_pdf.x, 1.0 / (1.0 / 3.0 / 2.0), 1e-12);
+  const auto bright = record(image, image.layout.lights, 1);
+  EXPECT_EQ(vector(bright.vertex), glm::dvec3(0, 7, 0));
+  EXPECT_EQ(bright.face, 2);
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(vector(bright.emission_over_pdf)[channel], (3.0 + channel) / (2.0 / 3.0 / 1.0), 1e-12);
+}
+
+TEST(MonoImage, CdfOfManyLightsAscendsToOne) {
+  const MonoImage image = make_mono_image(test_support::triangle_soup(800, 5, {8, 8}), 96, {});
+  ASSERT_EQ(image.layout.light_count, 100);
+  double before = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double now = record(image, image.layout.light_cdf, i);
+    EXPECT_GT(now, before);
+    before = now;
+  }
+  EXPECT_EQ(before, 1.0);
+}
+
+TEST(MonoImage, SceneWithoutLightIsRefusedByName) {
+  Scene scene = three_triangles();
+  for (testbench::Material& material : scene.materials) material.emission = glm::dvec3(0.0);
+  try {
+    make_mono_image(scene, 96, {});
+    FAIL() << "no error";
+  } catch (const testbench::InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("three: ", 0), 0u) << error.what();
+  }
+  scene.triangles.clear();
+  EXPECT_THROW(make_mono_image(scene, 96, {}), testbench::InputError);
+}
+
+/// The direction of a film position, x to the right and y down, in pixels.
+glm::dvec3 direction(const CameraRecord& camera, double x, double y) {
+  return glm::normalize(vector(camera.corner) + x * vector(camera.right) + y * vector(camera.down));
+}
+
+TEST(MonoImage, CameraSpansTheFieldOfView) {
+  Scene scene = three_triangles();
+  scene.camera.direction = glm::normalize(glm::dvec3(1, 1, 0));
+  scene.camera.up = {0, 0, 1};
+  const glm::dvec3 right = glm::normalize(glm::dvec3(1, -1, 0));
+  const MonoImage image = make_mono_image(scene, 96, {});
+  const auto camera = record(image, image.layout.camera);
+  EXPECT_EQ(vector(camera.position), scene.camera.position);
+  EXPECT_EQ(camera.width, 6);
+  EXPECT_EQ(camera.height, 4);
+  const auto expect_direction = [&](double x, double y, double to_right, double up) {
+    const double half = std::tan(0.4);  // of the height; a pixel is square
+    const glm::dvec3 expected =
+        glm::normalize(scene.camera.direction + right * (to_right * half * 1.5) + scene.camera.up * (up * half));
+    EXPECT_LT(glm::length(direction(camera, x, y) - expected), 1e-15) << x << ", " << y;
+  };
+  expect_direction(3, 2, 0, 0);
+  expect_direction(0, 0, -1, 1);
+  expect_direction(6, 0, 1, 1);
+  expect_direction(0, 4, -1, -1);
+  expect_direction(6, 4, 1, -1);
+  expect_direction(0.5, 0.5, -2.5 / 3, 1.5 / 2);
+  // The vertical field of view lies between the middles of the upper and the lower edge.
+  EXPECT_NEAR(std::acos(glm::dot(direction(camera, 3, 0), direction(camera, 3, 4))), 0.8, 1e-14);
+}
+
+struct Piece {
+  std::uint64_t first;
+  std::uint64_t bytes;
+};
+
+TEST(MonoImage, PiecesLieOneBehindTheOther) {
+  path_tracer::ProgramConfig config;
+  config.bin_blocks = 5;
+  config.slot_vertices = 12;
+  constexpr std::uint64_t kSlots = 5 * 32;
+  const MonoImage image = make_mono_image(three_triangles(), 32, config);
+  const path_tracer::Layout& layout = image.layout;
+  const Piece pieces[] = {
+      {layout.camera.address, sizeof(CameraRecord)},
+      {layout.triangles.address, 3 * sizeof(TriangleRecord)},
+      {layout.surfaces.address, 3 * sizeof(SurfaceRecord)},
+      {layout.lights.address, 2 * sizeof(LightRecord)},
+      {layout.light_cdf.address, 2 * sizeof(double)},
+      {layout.ray_bin.address, kSlots * sizeof(path_tracer::RayRecord)},
+      {layout.intersection_bin.address, kSlots * sizeof(path_tracer::HitRecord)},
+      {layout.scatter_bin.address, kSlots * sizeof(path_tracer::ScatterRecord)},
+      {layout.shadow_bin.address, kSlots * sizeof(path_tracer::ShadowRecord)},
+      {layout.direct_light_bin.address, kSlots * sizeof(path_tracer::DirectLightRecord)},
+      {layout.path_bin.address, kSlots * sizeof(path_tracer::PathRecord)},
+      {layout.vertices.address, 12 * kSlots * sizeof(path_tracer::VertexRecord)},
+      {layout.folds.address, kSlots * sizeof(path_tracer::FoldRecord)},
+      {layout.finished.address, kSlots * sizeof(path_tracer::FinishedRecord)},
+      {layout.results_header[0].address, sizeof(path_tracer::ResultsHeader)},
+      {layout.results_header[1].address, sizeof(path_tracer::ResultsHeader)},
+      {layout.results[0].address, kSlots * sizeof(path_tracer::RadianceRecord)},
+      {layout.results[1].address, kSlots * sizeof(path_tracer::RadianceRecord)},
+  };
+  std::uint64_t end = 0;
+  for (const Piece& piece : pieces) {
+    EXPECT_GE(piece.first, end);
+    EXPECT_LT(piece.first, end + 64);
+    EXPECT_EQ(piece.first % 64, 0u);
+    end = piece.first + piece.bytes;
+  }
+  EXPECT_GE(layout.total_bytes, end);
+  EXPECT_LT(layout.total_bytes, end + 64);
+  EXPECT_EQ(image.bytes.size(), layout.scene_bytes);
+  EXPECT_EQ(layout.scene_bytes, layout.ray_bin.address);
+}
+
+TEST(Faces, NeighboursInOnePlaneShare) {
+  // A quad, its neighbour in the plane, and one folded up by a little.
+  const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0), e(2, 0, 0), f(2, 1, 0), up(0, 2, 1e-6);
+  EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{a, c, d}, 0}, {{b, e, f}, 0}, {{b, f, c}, 0}, {{d, c, up}, 0}}),
+            (std::vector<std::int32_t>{0, 0, 0, 0, 1}));
+}
+
+TEST(Faces, OrderAndMaterialDoNotMatter) {
+  const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0), e(2, 0, 0), f(2, 1, 0);
+  // The first and the second touch through the third only.
+  EXPECT_EQ(number_faces({{{d, a, c}, 0}, {{b, e, f}, 1}, {{a, b, c}, 2}, {{b, f, c}, 0}}),
+            (std::vector<std::int32_t>{0, 0, 0, 0}));
+}
+
+TEST(Faces, WindingDoesNotMatter) {
+  const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0);
+  EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{a, d, c}, 0}}), (std::vector<std::int32_t>{0, 0}));
+}
+
+TEST(Faces, SlantedPlanesAreRecognisedInSpiteOfRounding) {
+  const auto turned = [](double x, double y) {
+    const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
+    const glm::dvec3 v = glm::normalize(glm::cross(u, glm::dvec3(0.3, -1, 0.2)));
+    return glm::dvec3(100, -70, 30) + u * x + v * y;
+  };
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < 20; ++i) {
+    const glm::dvec3 p[4] = {turned(i / 3.0, 0), turned((i + 1) / 3.0, 0), turned((i + 1) / 3.0, 1), turned(i / 3.0, 1)};
+    triangles.push_back({{p[0], p[1], p[2]}, 0});
+    triangles.push_back({{p[0], p[2], p[3]}, 0});
+  }
+  for (const std::int32_t face : number_faces(triangles)) EXPECT_EQ(face, 0);
+}
+
+TEST(Faces, TouchingInAPointOrAPartOfAnEdgeIsNotEnough) {
+  const glm::dvec3 a(0, 0, 0), b(2, 0, 0), c(0, 2, 0);
+  // In the same plane: one that shares a corner, and one with half of the edge (a T-junction).
+  EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{b, {4, 0, 0}, {4, 2, 0}}, 0}, {{a, {1, 0, 0}, {0, -1, 0}}, 0}}),
+            (std::vector<std::int32_t>{0, 1, 2}));
+}
+
+TEST(Faces, ParallelPlanesAreApart) {
+  EXPECT_EQ(number_faces({{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0}, {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, 0}}),
+            (std::vector<std::int32_t>{0, 1}));
+}
+
+TEST(Faces, ACubeHasSix) {
+  const Scene cube = test_support::closed_cube(0.5, 0.5, {4, 4});
+  const std::vector<std::int32_t> faces = number_faces(cube.triangles);
+  ASSERT_EQ(faces.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(faces[i], std::int32_t(i / 2));
+}
+
+TEST(Faces, NoneForNoTriangles) {
+  EXPECT_TRUE(number_faces({}).empty());
+}
+
+}  // namespace

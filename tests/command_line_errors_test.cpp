@@ -81,7 +81,7 @@ TEST_F(CommandLineErrors, Firmware) {
   expect_render_error({"--n", "9"}, {"n: found 9", "0 to 8"});
   expect_render_error({"--n", "-1"}, {"n: found -1", "0 to 8"});
   expect_render_error({"--n", "4", "--bin-blocks", "3"}, {"n: found 4", "bin length", "3 blocks"});
-  expect_render_error({"--bin-blocks", "0"}, {"found 0", "1 or more"});
+  expect_render_error({"--bin-blocks", "0"}, {"found 0", "1 to 65536"});
   expect_render_error({"--slot-vertices", "6"}, {"found 6", "multiple of 4"});
   expect_render_error({"--roulette-start", "-3"}, {"roulette", "-3"});
 }

@@ -10,8 +10,8 @@ namespace model {
 
 enum class PioArbitration : std::uint8_t { strict_fifo, reads_overtake_writes, queue_per_direction };
 
-/// Every number of the chip. Defaults, units, meaning, range, confidence and source of each are in the parameter table
-/// (chip_parameters.hpp), which is the only place that knows the keys.
+/// Every number of the chip. Defaults, units, meaning, range, confidence and source of each are in the
+/// parameter table (chip_parameters.hpp), which is the only place that knows the keys.
 struct ChipConfig {
   std::string preset;
 
@@ -39,7 +39,8 @@ struct ChipConfig {
     int setup_cycles;         ///< a request
     int per_pe_cycles;        ///< a participating PE
     int bytes_per_cycle;      ///< into or out of one PE
-    int misalignment_cycles;  ///< a PE whose mono address is not 8-byte aligned or whose piece crosses a packet
+    int misalignment_cycles;  ///< a PE whose mono address is not 8-byte aligned or whose piece crosses a
+                              ///< packet
     bool consolidate_equal_addresses;
     int stolen_sram_cycles;  ///< SRAM port cycles taken for 8 bytes
   } pio;

@@ -76,7 +76,8 @@ Preset g80_like() {
 
 // ------------------------------------------------------------------------------------------------------
 // The paper's fitted constants: the only numbers of the model that may be fitted to the paper's Tables 1
-// and 2. At most three, fitted on at most three named cells; `why` names the cells. The others equal csx600's.
+// and 2. At most three, fitted on at most three named cells; `why` names the cells. The others equal
+// csx600's.
 std::vector<PresetOverride> paper_fitted_constants() {
   return {{"pio.setup_cycles", "150", kAssumed, "as csx600, not fitted to the tables"},
           {"pio.per_pe_cycles", "16", kAssumed, "as csx600, not fitted to the tables"},

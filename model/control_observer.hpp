@@ -8,15 +8,15 @@ namespace model {
 
 /// What the control unit's cycles go to. Every cycle has one cause; they add up to the run.
 enum class CycleCause : std::uint8_t {
-  poly,           ///< kernels on the PE array
-  stolen,         ///< kernels slowed down by programmed I/O at the SRAM ports
-  mono,           ///< instructions of its own outside kernels
-  data_cache,     ///< waiting for a line of mono memory
-  semaphore,      ///< signals and waits that did not block
-  wait_load,      ///< blocked on a semaphore of a mono-to-poly transfer
-  wait_save,      ///< blocked on a semaphore of a poly-to-mono transfer
-  wait_pio_queue, ///< blocked because the PIO queue was full
-  wait_host,      ///< blocked on a semaphore of the host
+  poly,            ///< kernels on the PE array
+  stolen,          ///< kernels slowed down by programmed I/O at the SRAM ports
+  mono,            ///< instructions of its own outside kernels
+  data_cache,      ///< waiting for a line of mono memory
+  semaphore,       ///< signals and waits that did not block
+  wait_load,       ///< blocked on a semaphore of a mono-to-poly transfer
+  wait_save,       ///< blocked on a semaphore of a poly-to-mono transfer
+  wait_pio_queue,  ///< blocked because the PIO queue was full
+  wait_host,       ///< blocked on a semaphore of the host
 };
 
 inline constexpr int kCycleCauses = static_cast<int>(CycleCause::wait_host) + 1;

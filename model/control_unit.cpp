@@ -13,14 +13,17 @@ constexpr int kFirmwareStackBytes = 8 << 20;
 
 }  // namespace
 
-Cycles ControlStatistics::total() const { return std::accumulate(cycles.begin(), cycles.end(), Cycles{0}); }
-
-Cycles ControlStatistics::exposed_pio() const {
-  return (*this)[CycleCause::wait_load] + (*this)[CycleCause::wait_save] + (*this)[CycleCause::wait_pio_queue];
+Cycles ControlStatistics::total() const {
+  return std::accumulate(cycles.begin(), cycles.end(), Cycles{0});
 }
 
-ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-                         PeArray& pe_array)
+Cycles ControlStatistics::exposed_pio() const {
+  return (*this)[CycleCause::wait_load] + (*this)[CycleCause::wait_save] +
+         (*this)[CycleCause::wait_pio_queue];
+}
+
+ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config,
+                         const ClockDomain& clock, PeArray& pe_array)
     : sc_module(name),
       Machine(config.chip.pes, config.poly.sram_bytes),
       config_(config),
@@ -36,9 +39,13 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
   set_stack_size(kFirmwareStackBytes);
 }
 
-void ControlUnit::forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) { mono_window_.invalidate(); }
+void ControlUnit::forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) {
+  mono_window_.invalidate();
+}
 
-void ControlUnit::start() { start_event_.notify(sc_core::SC_ZERO_TIME); }
+void ControlUnit::start() {
+  start_event_.notify(sc_core::SC_ZERO_TIME);
+}
 
 void ControlUnit::run() {
   wait(start_event_);
@@ -78,7 +85,8 @@ void ControlUnit::synchronise() {
   if (target > sc_core::sc_time_stamp()) wait(target - sc_core::sc_time_stamp());
 }
 
-/// What was reported lies in the future of SystemC time; here it becomes the present, before too much piles up.
+/// What was reported lies in the future of SystemC time; here it becomes the present, before too much piles
+/// up.
 void ControlUnit::synchronise_for_observer() {
   if (observer_ == nullptr || now_ < next_sync_) return;
   next_sync_ = now_ + sync_cycles_;
@@ -101,7 +109,8 @@ void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
   pio->settle(start + cost.cycles);
   const std::uint64_t words = pio->words_moved_before(start + cost.cycles) - words_before;
   spend(CycleCause::poly, cost.cycles);
-  spend(CycleCause::stolen, stolen_cycles(words, config_.pio.stolen_sram_cycles, cost.sram_cycles, cost.cycles));
+  spend(CycleCause::stolen,
+        stolen_cycles(words, config_.pio.stolen_sram_cycles, cost.sram_cycles, cost.cycles));
   if (observer_ != nullptr)
     observer_->ran_kernel(kernel, start, now_, static_cast<int>(issued.root().enabled_lanes));
   synchronise_for_observer();
@@ -118,7 +127,9 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
   spend(CycleCause::wait_pio_queue, go_on - now_);
 }
 
-void ControlUnit::signal_at(int index, Cycles at) { semaphore_file_.signal(index, at); }
+void ControlUnit::signal_at(int index, Cycles at) {
+  semaphore_file_.signal(index, at);
+}
 
 void ControlUnit::sem_signal(cn::Semaphore semaphore) {
   if (!timed_) {
@@ -212,8 +223,8 @@ void ControlUnit::fetch_line(cn::MonoAddress line) {
   send(line, line_.data(), line_.size());
 }
 
-/// Write-through, and the control unit waits until the memory has it: what it tells the host must be there before the
-/// signal is.
+/// Write-through, and the control unit waits until the memory has it: what it tells the host must be there
+/// before the signal is.
 void ControlUnit::write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) {
   if (!timed_) {
     mono_window_.write(to, bytes, size, *mono_socket.operator->());
@@ -238,9 +249,10 @@ void ControlUnit::send(cn::MonoAddress address, std::uint8_t* data, std::size_t 
   sc_core::sc_time delay = delay_until(clock_, now_);
   mono_socket->b_transport(transaction_, delay);
   if (transaction_.is_response_error())
-    throw cn::MachineFault("mono access of " + std::to_string(size) + " bytes at " + std::to_string(address) + ": " +
-                           transaction_.get_response_string());
-  spend(CycleCause::data_cache, cycle_of_delay(clock_, delay) - now_ + Cycles(config_.control.cache_miss_cycles));
+    throw cn::MachineFault("mono access of " + std::to_string(size) + " bytes at " + std::to_string(address) +
+                           ": " + transaction_.get_response_string());
+  spend(CycleCause::data_cache,
+        cycle_of_delay(clock_, delay) - now_ + Cycles(config_.control.cache_miss_cycles));
 }
 
 }  // namespace model

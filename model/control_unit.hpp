@@ -43,7 +43,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   using Firmware = std::function<void(cn::Machine&)>;
 
-  ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock, PeArray& pe_array);
+  ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+              PeArray& pe_array);
 
   /// What runs from `start()` on.
   void load(Firmware firmware) { firmware_ = std::move(firmware); }
@@ -54,13 +55,15 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void rethrow_failure() const;
   const sc_core::sc_event& finished_event() const { return finished_event_; }
 
-  /// Semaphores that the host shares: the firmware's signals reach `host_event`, the host signals with host_signal().
+  /// Semaphores that the host shares: the firmware's signals reach `host_event`, the host signals with
+  /// host_signal().
   void share_with_host(cn::Semaphore semaphore);
   const sc_core::sc_event& host_event() const { return host_event_; }
   /// Takes one signal that the firmware has given by now; false when there is none.
   bool host_try_wait(cn::Semaphore semaphore);
   void host_signal(cn::Semaphore semaphore);
-  /// What the host does for work that takes no time: runs at once when the firmware signals it outside timed code.
+  /// What the host does for work that takes no time: runs at once when the firmware signals it outside timed
+  /// code.
   void on_untimed_signal(std::function<void()> service) { untimed_service_ = std::move(service); }
 
   /// The firmware's cycle, at or ahead of SystemC's time.
@@ -69,7 +72,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   Cycles start_cycle() const { return start_cycle_; }
   const ControlStatistics& statistics() const { return statistics_; }
 
-  /// Reports spans to `observer`; synchronises at least every `sync_cycles` so that they can be shown in time.
+  /// Reports spans to `observer`; synchronises at least every `sync_cycles` so that they can be shown in
+  /// time.
   void set_observer(ControlObserver* observer, Cycles sync_cycles);
 
   void sem_signal(cn::Semaphore semaphore) override;

@@ -7,12 +7,13 @@
 
 namespace model {
 
-/// Which lines of mono memory the control unit's data cache holds. Direct-mapped (assumed; the vendor states size and
-/// associativity nowhere that is public).
+/// Which lines of mono memory the control unit's data cache holds. Direct-mapped (assumed; the vendor states
+/// size and associativity nowhere that is public).
 class DataCache {
  public:
   /// @param bytes a multiple of line_bytes
-  DataCache(int bytes, int line_bytes) : line_bytes_(std::uint64_t(line_bytes)), tags_(std::size_t(bytes / line_bytes), kEmpty) {}
+  DataCache(int bytes, int line_bytes)
+      : line_bytes_(std::uint64_t(line_bytes)), tags_(std::size_t(bytes / line_bytes), kEmpty) {}
 
   std::uint64_t line_bytes() const { return line_bytes_; }
   std::uint64_t line_of(cn::MonoAddress address) const { return address / line_bytes_; }

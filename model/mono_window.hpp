@@ -24,10 +24,11 @@ class MonoWindow {
   /// The bytes that are at `address` now.
   void read(cn::MonoAddress address, std::uint8_t* to, std::uint64_t bytes,
             tlm::tlm_fw_transport_if<>& memory);
-  /// The bytes at `address` to look at: memory's own where it grants a pointer, else a copy that is made now and
-  /// lives as long as the window; asking again for the same address refreshes it.
+  /// The bytes at `address` to look at: memory's own where it grants a pointer, else a copy that is made now
+  /// and lives as long as the window; asking again for the same address refreshes it.
   const void* view(cn::MonoAddress address, std::uint64_t bytes, tlm::tlm_fw_transport_if<>& memory);
-  void write(cn::MonoAddress address, const void* from, std::uint64_t bytes, tlm::tlm_fw_transport_if<>& memory);
+  void write(cn::MonoAddress address, const void* from, std::uint64_t bytes,
+             tlm::tlm_fw_transport_if<>& memory);
   void invalidate() { pointer_ = Pointer::not_asked; }
 
  private:

@@ -174,9 +174,9 @@ void declare_control(Parameters& table) {
   table.push_back(integer<group, &Control::data_cache_bytes>(
       "control.data_cache_bytes", "bytes", 4096, {64, 1048576, 8}, assumed,
       "data cache of the control unit: exists [S9], size assumed [reference, section 9]"));
-  table.push_back(integer<group, &Control::cache_line_bytes>("control.cache_line_bytes", "bytes", 32,
-                                                             {8, 512, 8}, assumed,
-                                                             "line of the data cache [reference, section 1]"));
+  table.push_back(
+      integer<group, &Control::cache_line_bytes>("control.cache_line_bytes", "bytes", 32, {8, 512, 8},
+                                                 assumed, "line of the data cache [reference, section 1]"));
   table.push_back(integer<group, &Control::cache_miss_cycles>(
       "control.cache_miss_cycles", "cycles", 25, {0, kMaxCycles}, assumed,
       "cost of a miss in the control unit, on top of what the memory takes [reference, section 1]"));
@@ -318,7 +318,8 @@ const std::vector<ParameterInfo>& parameter_table() {
 const std::vector<ParameterSource>& parameter_sources() {
   static const std::vector<ParameterSource> sources = {
       {"reference",
-       "the project's own collection of public facts, kept apart from the code; defaults where nothing is public"},
+       "the project's own collection of public facts, kept apart from the code; defaults where nothing is "
+       "public"},
       {"paper", "Coulthurst et al., Parallel Path Tracing using Incoherent Path-Atom Binning"},
       {"S1", "ClearSpeed: Technology, http://www.clearspeed.com/acceleration/technology/"},
       {"S3", "ClearSpeed SDK Reference Manual 3.1, 06-RM-1600 rev 2.B, p. 163"},

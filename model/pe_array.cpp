@@ -36,7 +36,8 @@ PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
   const double poly = issue_cycles * code_quality_factor_;
   const double mono = double(counts.by_class[kMono]) * cycles_[kMono];
   const double sram = double(counts.by_class[kSram]) * cycles_[kSram] * code_quality_factor_;
-  const Cost cost{static_cast<Cycles>(std::llround(std::max(poly, mono))), static_cast<Cycles>(std::llround(sram))};
+  const Cost cost{static_cast<Cycles>(std::llround(std::max(poly, mono))),
+                  static_cast<Cycles>(std::llround(sram))};
   ++statistics.runs;
   statistics.cycles += cost.cycles;
   statistics.issued += counts;

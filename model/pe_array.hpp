@@ -27,8 +27,8 @@ struct KernelStatistics {
   }
 };
 
-/// The PEs as a cost: they run in lock step, so a kernel takes what its instructions take, whatever the data. The
-/// lanes' values are computed by the firmware's own code (firmware/cn).
+/// The PEs as a cost: they run in lock step, so a kernel takes what its instructions take, whatever the data.
+/// The lanes' values are computed by the firmware's own code (firmware/cn).
 class PeArray : public sc_core::sc_module {
  public:
   PeArray(const sc_core::sc_module_name& name, const ChipConfig& config);
@@ -38,8 +38,8 @@ class PeArray : public sc_core::sc_module {
     Cycles sram_cycles = 0;  ///< of these, with an access to SRAM
   };
 
-  /// Books a kernel and returns what it takes. Mono instructions go on beside poly ones through the issue queue; the
-  /// longer stream counts.
+  /// Books a kernel and returns what it takes. Mono instructions go on beside poly ones through the issue
+  /// queue; the longer stream counts.
   Cost retire(const char* kernel, const cn::IssueTree& issued);
 
   const std::vector<KernelStatistics>& kernels() const { return kernels_; }

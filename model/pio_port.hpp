@@ -8,19 +8,20 @@
 
 namespace model {
 
-/// The programmed-I/O engine as the control unit drives it. Loosely timed: the control unit runs ahead of SystemC time
-/// and passes its own cycle; what the engine decides for a cycle can no longer change once it was asked to settle it.
+/// The programmed-I/O engine as the control unit drives it. Loosely timed: the control unit runs ahead of
+/// SystemC time and passes its own cycle; what the engine decides for a cycle can no longer change once it
+/// was asked to settle it.
 class PioPort : public virtual sc_core::sc_interface {
  public:
-  /// Queues a request at `now`; returns the cycle at which the control unit may go on (later than `now` when the queue
-  /// was full).
+  /// Queues a request at `now`; returns the cycle at which the control unit may go on (later than `now` when
+  /// the queue was full).
   virtual Cycles enqueue(const cn::Transfer& transfer, Cycles now) = 0;
 
   /// Starts every queued request that is due at or before `now`.
   virtual void settle(Cycles now) = 0;
 
-  /// Serves the next queued request, whenever it starts; false when none is queued. For a control unit that waits and
-  /// so cannot queue another one.
+  /// Serves the next queued request, whenever it starts; false when none is queued. For a control unit that
+  /// waits and so cannot queue another one.
   virtual bool serve_next() = 0;
 
   /// When the next queued request starts, if no other is queued before; nothing when none waits.

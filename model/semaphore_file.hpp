@@ -9,8 +9,8 @@
 
 namespace model {
 
-/// The chip's semaphores, each as the cycles at which signals that nobody has taken arrive. A signal may be known before
-/// it arrives.
+/// The chip's semaphores, each as the cycles at which signals that nobody has taken arrive. A signal may be
+/// known before it arrives.
 class SemaphoreFile {
  public:
   void signal(int index, Cycles at) {

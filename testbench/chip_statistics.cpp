@@ -103,7 +103,8 @@ Json to_json(const ChipStatistics& statistics) {
             {"words_in", statistics.poly_sram.words_in},
             {"words_out", statistics.poly_sram.words_out},
             {"port_cycles", statistics.poly_sram.port_cycles}}},
-          {"clear_connect", {{"pio", bus_json(statistics.bus_pio)}, {"control", bus_json(statistics.bus_control)}}},
+          {"clear_connect",
+           {{"pio", bus_json(statistics.bus_pio)}, {"control", bus_json(statistics.bus_control)}}},
           {"ddr",
            {{"page_hits", ddr.page_hits},
             {"page_misses", ddr.page_misses},
@@ -120,12 +121,8 @@ Json to_json(const ChipStatistics& statistics) {
 }
 
 Json to_json(const path_tracer::RunCounts& counts) {
-  return {{"paths", counts.paths},
-          {"segments", counts.segments},
-          {"shadow_rays", counts.shadow_rays},
-          {"folds", counts.folds},
-          {"blocks", counts.blocks},
-          {"skipped_blocks", counts.skipped_blocks},
+  return {{"paths", counts.paths}, {"segments", counts.segments}, {"shadow_rays", counts.shadow_rays},
+          {"folds", counts.folds}, {"blocks", counts.blocks},     {"skipped_blocks", counts.skipped_blocks},
           {"steps", counts.steps}};
 }
 

@@ -18,8 +18,12 @@ double clock_seconds(clockid_t clock) {
 HostTimer::HostTimer()
     : cpu_start_(clock_seconds(CLOCK_PROCESS_CPUTIME_ID)), wall_start_(clock_seconds(CLOCK_MONOTONIC)) {}
 
-double HostTimer::cpu_seconds() const { return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_; }
-double HostTimer::wall_seconds() const { return clock_seconds(CLOCK_MONOTONIC) - wall_start_; }
+double HostTimer::cpu_seconds() const {
+  return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_;
+}
+double HostTimer::wall_seconds() const {
+  return clock_seconds(CLOCK_MONOTONIC) - wall_start_;
+}
 
 std::uint64_t peak_bytes() {
   rusage usage{};

@@ -8,7 +8,9 @@ namespace {
 // A signal handler reaches nothing but statics.
 volatile std::sig_atomic_t interrupt_requested = 0;
 
-void request_interrupt(int) { interrupt_requested = 1; }
+void request_interrupt(int) {
+  interrupt_requested = 1;
+}
 
 }  // namespace
 
@@ -23,6 +25,8 @@ InterruptGuard::~InterruptGuard() {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-bool InterruptGuard::requested() const { return interrupt_requested != 0; }
+bool InterruptGuard::requested() const {
+  return interrupt_requested != 0;
+}
 
 }  // namespace testbench

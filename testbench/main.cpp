@@ -12,7 +12,8 @@ constexpr int kRunFailed = 1;
 constexpr int kWrongInput = 2;
 
 int run(int argc, char** argv) {
-  CLI::App app("A SystemC model of the ClearSpeed CSX600 that runs a binned, n-buffered path tracer", "csx600");
+  CLI::App app("A SystemC model of the ClearSpeed CSX600 that runs a binned, n-buffered path tracer",
+               "csx600");
   app.require_subcommand(1);
   testbench::add_render_command(app);
   testbench::add_reproduce_command(app);
@@ -36,7 +37,9 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int sc_main(int argc, char** argv) { return run(argc, argv); }
+int sc_main(int argc, char** argv) {
+  return run(argc, argv);
+}
 
 /// In place of the one in SystemC's library, which would print its banner into every run.
 int main(int argc, char** argv) {

@@ -16,7 +16,9 @@ using path_tracer::LightRecord;
 using path_tracer::SurfaceRecord;
 using path_tracer::TriangleRecord;
 
-cn::vec3<double> to_record(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+cn::vec3<double> to_record(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 CameraRecord camera_record(const Camera& camera, const FilmSize& film) {
   const glm::dvec3 right = glm::cross(camera.direction, camera.up);
@@ -52,7 +54,8 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
 
 /// What a light sends out in all, up to a common factor; lights are chosen in proportion to it.
 double light_power(const Triangle& triangle, const Material& material) {
-  return glm::length(area_normal(triangle)) * (material.emission.x + material.emission.y + material.emission.z);
+  return glm::length(area_normal(triangle)) *
+         (material.emission.x + material.emission.y + material.emission.z);
 }
 
 struct Lights {
@@ -136,8 +139,10 @@ std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles) {
       const Triangle& current = triangles[open.back()];
       open.pop_back();
       for (int k = 0; k < 3; ++k) {
-        for (const std::size_t neighbour : by_edge[make_edge(current.vertex[k], current.vertex[(k + 1) % 3])]) {
-          if (faces[neighbour] != path_tracer::kNoFace || !lies_in_plane(triangles[seed], triangles[neighbour]))
+        for (const std::size_t neighbour :
+             by_edge[make_edge(current.vertex[k], current.vertex[(k + 1) % 3])]) {
+          if (faces[neighbour] != path_tracer::kNoFace ||
+              !lies_in_plane(triangles[seed], triangles[neighbour]))
             continue;
           faces[neighbour] = next_face;
           open.push_back(neighbour);
@@ -162,8 +167,8 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   const CameraRecord camera = camera_record(scene.camera, scene.film);
 
   MonoImage image;
-  image.layout = path_tracer::make_layout(static_cast<int>(triangles.size()), static_cast<int>(lights.records.size()),
-                                          num_pes, config);
+  image.layout = path_tracer::make_layout(static_cast<int>(triangles.size()),
+                                          static_cast<int>(lights.records.size()), num_pes, config);
   image.bytes.resize(image.layout.scene_bytes);
   put(image, image.layout.camera, &camera, 1);
   put(image, image.layout.triangles, triangles.data(), triangles.size());

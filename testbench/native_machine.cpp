@@ -28,7 +28,8 @@ void NativeMachine::sem_wait(cn::Semaphore semaphore) {
 
 void NativeMachine::start_transfer(const cn::Transfer& transfer) {
   const auto bytes = std::uint64_t(transfer.poly.size_bytes);
-  const int outside = cn::first_pe_not(transfer, num_pes(), [&](cn::MonoAddress place) { return is_within(place, bytes); });
+  const int outside =
+      cn::first_pe_not(transfer, num_pes(), [&](cn::MonoAddress place) { return is_within(place, bytes); });
   if (outside >= 0) check_range(transfer.mono[outside], bytes, "transfer");
   cn::move_data(transfer, poly_memory(), mono_.data());
   ++semaphores_.at(std::size_t(transfer.done.index));
@@ -46,8 +47,9 @@ void NativeMachine::write_mono_bytes(cn::MonoAddress to, const void* bytes, std:
 
 void NativeMachine::check_range(cn::MonoAddress first, std::uint64_t bytes, const char* what) const {
   if (!is_within(first, bytes))
-    throw cn::MachineFault(std::string(what) + " of " + std::to_string(bytes) + " bytes at " + std::to_string(first) +
-                           " leaves mono memory of " + std::to_string(mono_.size()) + " bytes");
+    throw cn::MachineFault(std::string(what) + " of " + std::to_string(bytes) + " bytes at " +
+                           std::to_string(first) + " leaves mono memory of " + std::to_string(mono_.size()) +
+                           " bytes");
 }
 
 }  // namespace testbench

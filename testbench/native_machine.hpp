@@ -8,8 +8,8 @@
 
 namespace testbench {
 
-/// cn::Machine without a clock: transfers are instant, nothing costs anything. The functional reference of the tests and
-/// the fast preview.
+/// cn::Machine without a clock: transfers are instant, nothing costs anything. The functional reference of
+/// the tests and the fast preview.
 class NativeMachine : public cn::Machine {
  public:
   NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes);

@@ -66,8 +66,8 @@ class Run {
 
   /// Builds the firmware on a machine and runs it to its end.
   void firmware(cn::Machine& machine) {
-    path_tracer::PathTracer tracer(machine, path_tracer::kernels(options_.level), options_.program, image_.layout,
-                                   options_.work);
+    path_tracer::PathTracer tracer(machine, path_tracer::kernels(options_.level), options_.program,
+                                   image_.layout, options_.work);
     result_.poly_memory_map = machine.poly_memory().map();
     tracer.run(std::ref(relay_));
     result_.counts = tracer.counts();
@@ -98,7 +98,8 @@ class Run {
 
 }  // namespace
 
-RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, const RenderProgress& progress) {
+RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
+                            const RenderProgress& progress) {
   return with_input_errors([&] {
     Run run(scene, options, progress);
     model::Csx600 chip("csx600", options.chip);
@@ -118,7 +119,8 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, co
   });
 }
 
-RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress) {
+RenderResult render_natively(const Scene& scene, const RenderOptions& options,
+                             const RenderProgress& progress) {
   return with_input_errors([&] {
     Run run(scene, options, progress);
     const path_tracer::Layout& layout = run.image().layout;

@@ -38,10 +38,12 @@ using RenderProgress = std::function<bool(double share)>;
 
 /// The firmware on the SystemC model. At most one a process, as SystemC elaborates once.
 /// Throws InputError for what does not fit the chip, RunError for a run that failed or was interrupted.
-RenderResult render_on_chip(const Scene& scene, const RenderOptions& options, const RenderProgress& progress = {});
+RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
+                            const RenderProgress& progress = {});
 
 /// The same firmware without SystemC: the same image, no time.
-RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress = {});
+RenderResult render_natively(const Scene& scene, const RenderOptions& options,
+                             const RenderProgress& progress = {});
 
 /// The widest level this machine executes.
 path_tracer::Level widest_level();

@@ -30,7 +30,9 @@ Json program_json(const RenderOptions& options) {
           {"samples", options.work.samples}};
 }
 
-std::uint64_t rays(const path_tracer::RunCounts& counts) { return counts.segments + counts.shadow_rays; }
+std::uint64_t rays(const path_tracer::RunCounts& counts) {
+  return counts.segments + counts.shadow_rays;
+}
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -42,7 +44,8 @@ using Rows = std::vector<std::pair<std::string, std::string>>;
 
 void add_chip_rows(const RenderResult& result, Rows& rows) {
   const ChipStatistics& chip = *result.chip;
-  rows.emplace_back("simulated time", text("%.6f s", chip.seconds()) + text(" (%.0f cycles)", double(chip.firmware_cycles)));
+  rows.emplace_back("simulated time",
+                    text("%.6f s", chip.seconds()) + text(" (%.0f cycles)", double(chip.firmware_cycles)));
   rows.emplace_back("simulated segments/s", text("%.0f", double(result.counts.segments) / chip.seconds()));
   rows.emplace_back("PE utilisation", text("%.2f %%", 100 * chip.pe_utilisation()));
   rows.emplace_back("SIMD efficiency", text("%.2f %%", 100 * chip.simd_efficiency()));
@@ -53,7 +56,8 @@ void add_chip_rows(const RenderResult& result, Rows& rows) {
 void add_host_rows(const RenderRequest& request, const RenderResult& result, Rows& rows) {
   const double rate = double(result.counts.segments) / result.cpu_seconds;
   const double silicon = silicon_segments_per_second(request.options.program.program);
-  rows.emplace_back("host time", text("%.2f s CPU", result.cpu_seconds) + text(", %.2f s wall", result.wall_seconds));
+  rows.emplace_back("host time",
+                    text("%.2f s CPU", result.cpu_seconds) + text(", %.2f s wall", result.wall_seconds));
   rows.emplace_back("host segments/s", text("%.0f", rate));
   rows.emplace_back("faster than the silicon",
                     text("%.1f times", rate / silicon) + text(" (paper: %.0f segments/s)", silicon));
@@ -93,7 +97,8 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
 std::string render_table(const RenderRequest& request, const RenderResult& result) {
   Rows rows;
   const path_tracer::RunCounts& counts = result.counts;
-  rows.emplace_back("path segments", text("%.0f", double(counts.segments)) + text(" of %.0f paths", double(counts.paths)) +
+  rows.emplace_back("path segments", text("%.0f", double(counts.segments)) +
+                                         text(" of %.0f paths", double(counts.paths)) +
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));
   if (result.chip) add_chip_rows(result, rows);
   add_host_rows(request, result, rows);
@@ -106,7 +111,8 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
   return table;
 }
 
-std::map<std::string, std::string> render_provenance(const RenderRequest& request, const RenderResult& result) {
+std::map<std::string, std::string> render_provenance(const RenderRequest& request,
+                                                     const RenderResult& result) {
   return {{"csx600.scene", request.scene},
           {"csx600.firmware", program_json(request.options).dump()},
           {"csx600.machine", request.native ? "native" : "chip " + request.options.chip.preset},

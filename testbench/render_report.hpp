@@ -1,7 +1,7 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "testbench/render.hpp"
@@ -22,6 +22,7 @@ nlohmann::ordered_json render_statistics(const RenderRequest& request, const Ren
 std::string render_table(const RenderRequest& request, const RenderResult& result);
 
 /// For the image's header: what made it.
-std::map<std::string, std::string> render_provenance(const RenderRequest& request, const RenderResult& result);
+std::map<std::string, std::string> render_provenance(const RenderRequest& request,
+                                                     const RenderResult& result);
 
 }  // namespace testbench

@@ -8,7 +8,8 @@ void ResultReader::fetch(const Read& read) {
   path_tracer::ResultsHeader header;
   read(layout_.results_header[half_].address, &header, sizeof(header));
   records_.resize(std::size_t(header.records));
-  read(layout_.results[half_].address, records_.data(), records_.size() * sizeof(path_tracer::RadianceRecord));
+  read(layout_.results[half_].address, records_.data(),
+       records_.size() * sizeof(path_tracer::RadianceRecord));
   for (const path_tracer::RadianceRecord& record : records_)
     if (record.pixel >= 0) film_.add(record.pixel, {record.radiance.x, record.radiance.y, record.radiance.z});
   half_ = 1 - half_;
@@ -17,9 +18,10 @@ void ResultReader::fetch(const Read& read) {
 void require_no_rejected_samples(const Film& film) {
   const RejectedSamples& rejected = film.rejected();
   if (film.rejected_samples() == 0) return;
-  throw RunError("the film refused " + std::to_string(film.rejected_samples()) + " samples: " +
-                 std::to_string(rejected.not_finite) + " not finite, " + std::to_string(rejected.negative) +
-                 " negative, " + std::to_string(rejected.too_large) + " above " + std::to_string(film.max_radiance()));
+  throw RunError("the film refused " + std::to_string(film.rejected_samples()) +
+                 " samples: " + std::to_string(rejected.not_finite) + " not finite, " +
+                 std::to_string(rejected.negative) + " negative, " + std::to_string(rejected.too_large) +
+                 " above " + std::to_string(film.max_radiance()));
 }
 
 }  // namespace testbench

@@ -27,8 +27,8 @@ class ResultReader {
   int half_ = 0;
 };
 
-/// Throws RunError when the film refused a sample: no run may end with a radiance that is not finite, negative or
-/// beyond the film's range.
+/// Throws RunError when the film refused a sample: no run may end with a radiance that is not finite,
+/// negative or beyond the film's range.
 void require_no_rejected_samples(const Film& film);
 
 }  // namespace testbench

@@ -86,7 +86,8 @@ void WaveFiles::write_view() const {
     auto names = model::wave_value_names(signal, probe_->kernel_names());
     if (signal.id == model::WaveSignal::control_semaphore) add_semaphore_names(names);
     if (names.empty()) continue;
-    const std::filesystem::path file = sibling("." + std::string(signal.scope) + "_" + std::string(signal.name) + ".txt");
+    const std::filesystem::path file =
+        sibling("." + std::string(signal.scope) + "_" + std::string(signal.name) + ".txt");
     std::ostringstream filter;
     model::write_value_filter(filter, names);
     write_bytes_atomically(file, filter.str());

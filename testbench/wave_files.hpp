@@ -22,8 +22,8 @@ struct WaveOptions {
 /// Throws InputError when the trace cannot be written, or a window is empty.
 void require_writable_waves(const WaveOptions& options);
 
-/// The waves of one run: the trace, a GTKWave view on its first blocks and the names of states and kernels. The trace has a
-/// temporary name until finish(); without it, nothing is left.
+/// The waves of one run: the trace, a GTKWave view on its first blocks and the names of states and kernels.
+/// The trace has a temporary name until finish(); without it, nothing is left.
 class WaveFiles {
  public:
   WaveFiles(const WaveOptions& options, model::Csx600& chip);

@@ -1,4 +1,5 @@
-// Bad input: exit code 2 (1 for a run that failed), one line that names what is wrong, and nothing left behind.
+// Bad input: exit code 2 (1 for a run that failed), one line that names what is wrong, and nothing left
+// behind.
 
 #include <unistd.h>
 
@@ -31,7 +32,8 @@ class CommandLineErrors : public test_support::CommandLineFixture {
     EXPECT_EQ(lines.size(), 1u) << result.error;
     if (lines.empty()) return "";
     EXPECT_EQ(lines[0].rfind("csx600: ", 0), 0u) << lines[0];
-    for (const std::string& part : parts) EXPECT_NE(lines[0].find(part), std::string::npos) << part << " in: " << lines[0];
+    for (const std::string& part : parts)
+      EXPECT_NE(lines[0].find(part), std::string::npos) << part << " in: " << lines[0];
     return lines[0];
   }
   /// Of rendering the Cornell box with every output asked for.
@@ -72,8 +74,8 @@ TEST_F(CommandLineErrors, Usage) {
 }
 
 TEST_F(CommandLineErrors, Size) {
-  for (const char* size : {"0x0", "0x5", "5x0", "-1x5", "5", "5x", "x5", "5x5x5", "axb", "16385x1", "4294967297x1", "5 x 5",
-                           "99999999999999999999x1"})
+  for (const char* size : {"0x0", "0x5", "5x0", "-1x5", "5", "5x", "x5", "5x5x5", "axb", "16385x1",
+                           "4294967297x1", "5 x 5", "99999999999999999999x1"})
     expect_render_error({"--size", size}, {"--size", std::string("'") + size + "'", "1 to 16384"});
 }
 
@@ -110,8 +112,9 @@ TEST_F(CommandLineErrors, Memory) {
 }
 
 TEST_F(CommandLineErrors, PolySramOverflowShowsTheBufferMap) {
-  for (const Words& how : {Words{"--n", "8", "--set", "poly.sram_bytes=4096"}, Words{"--bin-blocks", "400"},
-                           Words{"--bin-blocks", "400", "--native"}, Words{"--bin-blocks", "400", "--vcd", "a.vcd"}}) {
+  for (const Words& how :
+       {Words{"--n", "8", "--set", "poly.sram_bytes=4096"}, Words{"--bin-blocks", "400"},
+        Words{"--bin-blocks", "400", "--native"}, Words{"--bin-blocks", "400", "--vcd", "a.vcd"}}) {
     Words arguments = {"render", kCornellBox, "--size", "8x6", "--exr", "a.exr"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     const CommandResult result = run(arguments);
@@ -120,8 +123,8 @@ TEST_F(CommandLineErrors, PolySramOverflowShowsTheBufferMap) {
     EXPECT_EQ(files(), Words{});
     const Words lines = result.error_lines();
     ASSERT_GE(lines.size(), 4u) << result.error;
-    EXPECT_TRUE(std::regex_search(
-        lines[0], std::regex("^csx600: poly SRAM overflow: buffer '[^']+' needs [0-9]+ bytes a PE, [0-9]+ of [0-9]+ are free")))
+    EXPECT_TRUE(std::regex_search(lines[0], std::regex("^csx600: poly SRAM overflow: buffer '[^']+' needs "
+                                                       "[0-9]+ bytes a PE, [0-9]+ of [0-9]+ are free")))
         << lines[0];
     EXPECT_TRUE(std::regex_search(lines[1], std::regex("offset +bytes +buffer"))) << lines[1];
     for (std::size_t i = 2; i < lines.size(); ++i)
@@ -151,18 +154,31 @@ TEST_F(CommandLineErrors, BrokenScene) {
   };
   const Case cases[] = {
       {"TOML", [](SceneFiles& s) { s.toml += "x = [\n"; }, {"scene.toml", "TOML"}},
-      {"no camera", [](SceneFiles& s) { s.toml = "[film]\nwidth = 8\n[[mesh]]\nfile = \"mesh.obj\"\n"; },
+      {"no camera",
+       [](SceneFiles& s) { s.toml = "[film]\nwidth = 8\n[[mesh]]\nfile = \"mesh.obj\"\n"; },
        {"scene.toml", "camera"}},
-      {"unknown key", [](SceneFiles& s) { s.toml = replaced(s.toml, "width", "widht"); }, {"scene.toml:6", "film.widht"}},
-      {"empty film", [](SceneFiles& s) { s.toml = replaced(s.toml, "width = 8", "width = 0"); },
+      {"unknown key",
+       [](SceneFiles& s) { s.toml = replaced(s.toml, "width", "widht"); },
+       {"scene.toml:6", "film.widht"}},
+      {"empty film",
+       [](SceneFiles& s) { s.toml = replaced(s.toml, "width = 8", "width = 0"); },
        {"scene.toml:6", "film.width", "found 0"}},
-      {"text for a number", [](SceneFiles& s) { s.toml = replaced(s.toml, "= 40", "= \"wide\""); },
+      {"text for a number",
+       [](SceneFiles& s) { s.toml = replaced(s.toml, "= 40", "= \"wide\""); },
        {"scene.toml:4", "vertical_fov_degrees"}},
-      {"no mesh", [](SceneFiles& s) { s.toml = s.toml.substr(0, s.toml.find("[[mesh]]")); }, {"scene.toml", "mesh"}},
+      {"no mesh",
+       [](SceneFiles& s) { s.toml = s.toml.substr(0, s.toml.find("[[mesh]]")); },
+       {"scene.toml", "mesh"}},
       {"no light", [](SceneFiles& s) { s.mtl = replaced(s.mtl, "Ke 1 2 3", "Ke 0 0 0"); }, {"light", "Ke"}},
-      {"vertex index", [](SceneFiles& s) { s.obj = replaced(s.obj, "f 1 2 3", "f 1 2 9"); }, {"mesh.obj", "9", "1 to 3"}},
-      {"vertex", [](SceneFiles& s) { s.obj = replaced(s.obj, "v 0 1 0", "v 0 one 0"); }, {"mesh.obj:4", "one"}},
-      {"material", [](SceneFiles& s) { s.obj = replaced(s.obj, "usemtl light", "usemtl lamp"); }, {"mesh.obj", "lamp"}},
+      {"vertex index",
+       [](SceneFiles& s) { s.obj = replaced(s.obj, "f 1 2 3", "f 1 2 9"); },
+       {"mesh.obj", "9", "1 to 3"}},
+      {"vertex",
+       [](SceneFiles& s) { s.obj = replaced(s.obj, "v 0 1 0", "v 0 one 0"); },
+       {"mesh.obj:4", "one"}},
+      {"material",
+       [](SceneFiles& s) { s.obj = replaced(s.obj, "usemtl light", "usemtl lamp"); },
+       {"mesh.obj", "lamp"}},
       {"no faces", [](SceneFiles& s) { s.obj = replaced(s.obj, "f 1 2 3", ""); }, {"mesh"}},
   };
   for (const Case& broken : cases) {
@@ -207,8 +223,8 @@ TEST_F(CommandLineErrors, Waves) {
 }
 
 TEST_F(CommandLineErrors, WindowAfterTheRunFailsIt) {
-  expect_error({"render", kCornellBox, "--size", "8x6", "--samples", "1", "--exr", "a.exr", "--vcd", "a.vcd", "--vcd-cycles",
-                "999999999999:"},
+  expect_error({"render", kCornellBox, "--size", "8x6", "--samples", "1", "--exr", "a.exr", "--vcd", "a.vcd",
+                "--vcd-cycles", "999999999999:"},
                {"a", "window", "999999999999"}, 1);
 }
 

@@ -1,4 +1,5 @@
-// The program as users meet it: what it says, what it leaves and how it ends. Bad input: command_line_errors_test.cpp.
+// The program as users meet it: what it says, what it leaves and how it ends. Bad input:
+// command_line_errors_test.cpp.
 
 #include <signal.h>
 #include <unistd.h>
@@ -37,8 +38,8 @@ class CommandLine : public test_support::CommandLineFixture {
 };
 
 TEST_F(CommandLine, RenderWritesEveryOutputAndNothingElse) {
-  const CommandResult result =
-      render({"--exr", "a.exr", "--png", "a.png", "--stats", "a.json", "--vcd", "a.vcd", "--vcd-cycles", "100000:200000"});
+  const CommandResult result = render({"--exr", "a.exr", "--png", "a.png", "--stats", "a.json", "--vcd",
+                                       "a.vcd", "--vcd-cycles", "100000:200000"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.error, "");
   for (const char* line : {"simulated time", "segments/s", "PE utilisation", "SIMD efficiency", "exposed DMA",
@@ -52,7 +53,8 @@ TEST_F(CommandLine, RenderWritesEveryOutputAndNothingElse) {
     EXPECT_EQ(name.find("partial"), std::string::npos) << name;
     EXPECT_FALSE(read(name).empty()) << name;
   }
-  for (const char* name : {"a.exr", "a.png", "a.json", "a.vcd", "a.gtkw"}) EXPECT_EQ(names.count(name), 1u) << name;
+  for (const char* name : {"a.exr", "a.png", "a.json", "a.vcd", "a.gtkw"})
+    EXPECT_EQ(names.count(name), 1u) << name;
   EXPECT_EQ(read("a.exr").substr(0, 4), "\x76\x2f\x31\x01");
   EXPECT_EQ(read("a.png").substr(1, 3), "PNG");
 }
@@ -68,7 +70,8 @@ TEST_F(CommandLine, StatisticsHaveWhatEveryReaderNeeds) {
   EXPECT_GT(chip.at("host").at("wall_seconds").get<double>(), 0.0);
   EXPECT_GT(chip.at("host").at("peak_bytes").get<std::uint64_t>(), 1000000u);
   const double clock_hz = chip.at("chip").at("clock_hz");
-  EXPECT_DOUBLE_EQ(chip.at("simulated_seconds").get<double>(), chip.at("simulated_cycles").get<double>() / clock_hz);
+  EXPECT_DOUBLE_EQ(chip.at("simulated_seconds").get<double>(),
+                   chip.at("simulated_cycles").get<double>() / clock_hz);
   std::uint64_t cycles = 0;
   for (const auto& [cause, of_cause] : chip.at("chip").at("control_unit").at("cycles_by_cause").items())
     cycles += of_cause.get<std::uint64_t>();
@@ -96,11 +99,12 @@ TEST_F(CommandLine, StatisticsOfTwoRunsDifferInTheHostOnly) {
 
 TEST_F(CommandLine, OptionsReachTheFirmwareAndTheChip) {
   const json plain = statistics({});
-  const json other = statistics({"--n", "3", "--buffer", "loads", "--program", "segments", "--seed", "7", "--bin-blocks",
-                                 "4", "--slot-vertices", "8", "--roulette-start", "2", "--chip", "csx600_250mhz", "--set",
-                                 "pio.setup_cycles=777"});
-  const json expected = {{"program", "segments"}, {"n", 3},          {"buffer", "loads"}, {"bin_blocks", 4},
-                         {"slot_vertices", 8},    {"roulette_start", 2}, {"seed", 7},     {"samples", 2}};
+  const json other = statistics({"--n", "3", "--buffer", "loads", "--program", "segments", "--seed", "7",
+                                 "--bin-blocks", "4", "--slot-vertices", "8", "--roulette-start", "2",
+                                 "--chip", "csx600_250mhz", "--set", "pio.setup_cycles=777"});
+  const json expected = {
+      {"program", "segments"}, {"n", 3},    {"buffer", "loads"}, {"bin_blocks", 4}, {"slot_vertices", 8},
+      {"roulette_start", 2},   {"seed", 7}, {"samples", 2}};
   for (const auto& [key, value] : expected.items()) {
     EXPECT_EQ(other.at("firmware").at(key), value) << key;
     if (key != "samples") {
@@ -158,8 +162,8 @@ void wait_until_interrupts_are_caught(pid_t child) {
 
 TEST_F(CommandLine, InterruptEndsARunCleanly) {
   for (const std::vector<std::string>& how : {Files{}, Files{"--native"}, Files{"--vcd", "a.vcd"}}) {
-    Files arguments = {"render", kCornellBox, "--samples", "1000000", "--exr", "a.exr", "--png", "a.png", "--stats",
-                       "a.json"};
+    Files arguments = {"render", kCornellBox, "--samples", "1000000", "--exr",
+                       "a.exr",  "--png",     "a.png",     "--stats", "a.json"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     const pid_t child = start(arguments);
     wait_until_interrupts_are_caught(child);

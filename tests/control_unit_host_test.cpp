@@ -1,4 +1,5 @@
-// The control unit and what lies outside the chip: semaphores shared with the host, observers, memory of another make.
+// The control unit and what lies outside the chip: semaphores shared with the host, observers, memory of
+// another make.
 
 #include <cstring>
 #include <tuple>
@@ -167,7 +168,8 @@ TEST_F(ControlUnitHost, ObserverIsToldEverySpan) {
                                 {CycleCause::poly, 10, 40, -1},
                                 {CycleCause::semaphore, 40, 41, 0},
                                 {CycleCause::wait_load, 41, kRequestCycles, 0}}));
-  EXPECT_EQ(recorder.kernels, (std::vector<std::tuple<std::string, Cycles, Cycles, int>>{{"fake", 10, 40, 5}}));
+  EXPECT_EQ(recorder.kernels,
+            (std::vector<std::tuple<std::string, Cycles, Cycles, int>>{{"fake", 10, 40, 5}}));
 }
 
 TEST_F(ControlUnitHost, ObserverLetsTimePassBehindTheFirmware) {
@@ -217,7 +219,8 @@ class MovingMemory : public sc_core::sc_module {
     return there_.empty();
   }
   unsigned int transport_dbg(tlm::tlm_generic_payload& transaction) {
-    std::memcpy(transaction.get_data_ptr(), there_.data() + transaction.get_address(), transaction.get_data_length());
+    std::memcpy(transaction.get_data_ptr(), there_.data() + transaction.get_address(),
+                transaction.get_data_length());
     return transaction.get_data_length();
   }
   std::vector<std::uint8_t> here_;

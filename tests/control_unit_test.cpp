@@ -43,7 +43,8 @@ FakeArguments ten_adds_three_products_six_words() {
 
 TEST_F(ControlUnit, KernelCostsItsInstructionsAtTheirPrices) {
   build(priced_chip());
-  run_well([](Machine& machine) { machine.run(kFake, ten_adds_three_products_six_words(), LaneMask::first(8)); });
+  run_well(
+      [](Machine& machine) { machine.run(kFake, ten_adds_three_products_six_words(), LaneMask::first(8)); });
   EXPECT_EQ(spent(CycleCause::poly), 63u);  // 10 x 4 + 3 x 5.5 + 6 x 1 = 62.5
   EXPECT_EQ(statistics().total(), 63u);
 }
@@ -52,7 +53,8 @@ TEST_F(ControlUnit, KernelCostIsScaledByTheCodeQuality) {
   model::ChipConfig config = priced_chip();
   config.poly.code_quality_factor = 1.5;
   build(config);
-  run_well([](Machine& machine) { machine.run(kFake, ten_adds_three_products_six_words(), LaneMask::first(8)); });
+  run_well(
+      [](Machine& machine) { machine.run(kFake, ten_adds_three_products_six_words(), LaneMask::first(8)); });
   EXPECT_EQ(spent(CycleCause::poly), 94u);  // 93.75
 }
 
@@ -85,8 +87,8 @@ TEST_F(ControlUnit, MonoInstructionsOutsideKernelsTakeTimeOfTheirOwn) {
   EXPECT_EQ(statistics().mono_instructions, 7u);
 }
 
-// A line that is not in the cache: 6 cycles to the DDR, 30 to a page miss (20 to a hit), 4 for 32 bytes over the link, 6
-// back, and cache_miss_cycles = 25.
+// A line that is not in the cache: 6 cycles to the DDR, 30 to a page miss (20 to a hit), 4 for 32 bytes over
+// the link, 6 back, and cache_miss_cycles = 25.
 constexpr Cycles kPageMissLine = 6 + 30 + 4 + 6 + 25;
 constexpr Cycles kPageHitLine = 6 + 20 + 4 + 6 + 25;
 
@@ -116,7 +118,8 @@ TEST_F(ControlUnit, MonoReadAcrossLinesFetchesEach) {
 TEST_F(ControlUnit, MonoLinesOfOnePlaceInTheCacheDriveEachOtherOut) {
   build(test_chip());  // 4096 bytes
   run_well([](Machine& machine) {
-    for (const cn::MonoAddress address : {0, 4096, 0, 32, 32}) machine.read_mono(MonoPointer<double>{address});
+    for (const cn::MonoAddress address : {0, 4096, 0, 32, 32})
+      machine.read_mono(MonoPointer<double>{address});
   });
   EXPECT_EQ(statistics().data_cache_misses, 4u);
   EXPECT_EQ(statistics().data_cache_hits, 1u);
@@ -130,7 +133,8 @@ TEST_F(ControlUnit, MonoWriteWaitsForTheMemory) {
   });
   EXPECT_EQ(mono()[512], 0x88);
   EXPECT_EQ(spent(CycleCause::mono), 1u);
-  // 6 to the DDR, page miss 30, one cycle on its bus, 25; the read then hits the page after 4 of turn-round at most.
+  // 6 to the DDR, page miss 30, one cycle on its bus, 25; the read then hits the page after 4 of turn-round
+  // at most.
   EXPECT_EQ(spent(CycleCause::data_cache), 6 + 30 + 1 + 25 + kPageHitLine);
 }
 
@@ -230,7 +234,8 @@ TEST_F(ControlUnit, ProgrammedIoSlowsKernelsDownAtTheSramPorts) {
     EXPECT_EQ(spent(CycleCause::stolen), 8u);
     machine.sem_wait(done);
     load(machine, done);
-    machine.run(kFake, issues(InstructionClass::sram, 156), LaneMask::first(8));  // half of the words pass by then
+    machine.run(kFake, issues(InstructionClass::sram, 156),
+                LaneMask::first(8));  // half of the words pass by then
     EXPECT_EQ(spent(CycleCause::stolen), 8u + 16u);
     machine.sem_wait(done);
     machine.run(kFake, issues(InstructionClass::sram, 400), LaneMask::first(8));  // nothing passes
@@ -319,8 +324,8 @@ TEST_F(ControlUnit, FaultsOfTransfersReachTheCaller) {
 TEST(CycleCauses, HaveNamesOfTheirOwn) {
   std::vector<std::string> names;
   for (int i = 0; i < model::kCycleCauses; ++i) names.push_back(model::cycle_cause_name(CycleCause(i)));
-  EXPECT_EQ(names, (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore", "wait_load", "wait_save",
-                                             "wait_pio_queue", "wait_host"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore", "wait_load",
+                                             "wait_save", "wait_pio_queue", "wait_host"}));
 }
 
 }  // namespace

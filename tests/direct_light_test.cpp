@@ -1,5 +1,5 @@
-// A plane under a parallel square light against its closed form. The light reflects nothing and there is nothing else, so
-// what the plane sends is (reflectance / pi) * irradiance.
+// A plane under a parallel square light against its closed form. The light reflects nothing and there is
+// nothing else, so what the plane sends is (reflectance / pi) * irradiance.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ using testbench::Scene;
 constexpr double kPi = 3.14159265358979323846;
 const PlaneAndLight kValues{{0.25, 0.5, 0.75}, {4.0, 2.0, 1.0}};
 
-/// Share of a plane element's cosine-weighted hemisphere that a parallel rectangle a x b at height h takes, with one of
-/// its corners over the element (Howell's catalogue of configuration factors, B-3).
+/// Share of a plane element's cosine-weighted hemisphere that a parallel rectangle a x b at height h takes,
+/// with one of its corners over the element (Howell's catalogue of configuration factors, B-3).
 double corner_form_factor(double a, double b, double h) {
   const double x = a / h;
   const double y = b / h;
@@ -37,12 +37,15 @@ double corner_form_factor(double a, double b, double h) {
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
 }
 
-/// The same for the whole light, seen from (x, 0, z); odd in a and b, so the four corners add up with their signs.
+/// The same for the whole light, seen from (x, 0, z); odd in a and b, so the four corners add up with their
+/// signs.
 double light_form_factor(double x, double z) {
   constexpr double kSide = PlaneAndLight::kLightHalfSide;
   constexpr double kHeight = PlaneAndLight::kLightHeight;
-  return corner_form_factor(kSide - x, kSide - z, kHeight) + corner_form_factor(kSide + x, kSide - z, kHeight) +
-         corner_form_factor(kSide - x, kSide + z, kHeight) + corner_form_factor(kSide + x, kSide + z, kHeight);
+  return corner_form_factor(kSide - x, kSide - z, kHeight) +
+         corner_form_factor(kSide + x, kSide - z, kHeight) +
+         corner_form_factor(kSide - x, kSide + z, kHeight) +
+         corner_form_factor(kSide + x, kSide + z, kHeight);
 }
 
 /// Lambert's sum over the edges of a polygon seen from (x, 0, z), normal up: another way to the same number.
@@ -54,7 +57,8 @@ double polygon_form_factor(double x, double z) {
   for (int i = 0; i < 4; ++i) {
     const auto direction = [&](int k) {
       const double* const corner = corners[k % 4];
-      return glm::normalize(glm::dvec3(corner[0] * kSide, PlaneAndLight::kLightHeight, corner[1] * kSide) - from);
+      return glm::normalize(glm::dvec3(corner[0] * kSide, PlaneAndLight::kLightHeight, corner[1] * kSide) -
+                            from);
     };
     const glm::dvec3 a = direction(i);
     const glm::dvec3 b = direction(i + 1);
@@ -75,12 +79,15 @@ glm::dvec3 plane_point(const Scene& scene, double column, double row) {
 
 /// Mean of the form factor over a pixel, by Gauss and Legendre's rule of 4 x 4 points.
 double pixel_form_factor(const Scene& scene, int pixel) {
-  const double points[4] = {0.069431844202973712, 0.330009478207571868, 0.669990521792428132, 0.930568155797026288};
-  const double weights[4] = {0.173927422568726929, 0.326072577431273071, 0.326072577431273071, 0.173927422568726929};
+  const double points[4] = {0.069431844202973712, 0.330009478207571868, 0.669990521792428132,
+                            0.930568155797026288};
+  const double weights[4] = {0.173927422568726929, 0.326072577431273071, 0.326072577431273071,
+                             0.173927422568726929};
   double mean = 0;
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
-      const glm::dvec3 at = plane_point(scene, pixel % scene.film.width + points[i], pixel / scene.film.width + points[j]);
+      const glm::dvec3 at =
+          plane_point(scene, pixel % scene.film.width + points[i], pixel / scene.film.width + points[j]);
       mean += weights[i] * weights[j] * light_form_factor(at.x, at.z);
     }
   }
@@ -112,7 +119,8 @@ void expect_closed_form(Program program) {
     ASSERT_GT(variance.x, 0.0);
     EXPECT_LT(std::sqrt(variance.x), 0.03 * expected.x) << "too noisy to tell";
     const double z = (mean.x - expected.x) / std::sqrt(variance.x);
-    EXPECT_LT(std::abs(z), threshold) << "pixel " << pixel << " is " << mean.x << ", expected is " << expected.x;
+    EXPECT_LT(std::abs(z), threshold)
+        << "pixel " << pixel << " is " << mean.x << ", expected is " << expected.x;
     EXPECT_NEAR(mean.y / expected.y, mean.x / expected.x, 1e-12);
     EXPECT_NEAR(mean.z / expected.z, mean.x / expected.x, 1e-12);
     deviations += mean.x - expected.x;
@@ -131,7 +139,8 @@ TEST(DirectLight, TheProgramWithoutTimedRadianceMakesTheSameImage) {
             render_natively(scene, render_options(Program::direct, 16)).film.sha256());
 }
 
-/// A path that goes on, with the largest reflectance as its probability, finds the light with the form factor's.
+/// A path that goes on, with the largest reflectance as its probability, finds the light with the form
+/// factor's.
 TEST(DirectLight, FindingTheLightByHittingItAgrees) {
   const Scene scene = test_support::plane_under_light(kValues, {24, 16});
   constexpr int kSamples = 4096;
@@ -156,7 +165,8 @@ TEST(DirectLight, FindingTheLightByHittingItAgrees) {
   }
   // Unequal probabilities make the sum narrower than a binomial one (Hoeffding 1963, theorem 1).
   const double share = all_expected / film.pixel_count();
-  EXPECT_GT(test_support::binomial_tail_bound(all_hits, double(kSamples) * film.pixel_count(), share), probability);
+  EXPECT_GT(test_support::binomial_tail_bound(all_hits, double(kSamples) * film.pixel_count(), share),
+            probability);
 }
 
 /// The light's edges lie on pixel borders: 8 film heights to 8 units of length at the light.

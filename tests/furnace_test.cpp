@@ -1,4 +1,5 @@
-// A closed enclosure with albedo a and emission e everywhere: the radiance in it is e / (1 - a) in every direction.
+// A closed enclosure with albedo a and emission e everywhere: the radiance in it is e / (1 - a) in every
+// direction.
 
 #include <gtest/gtest.h>
 
@@ -30,11 +31,12 @@ using testbench::Scene;
 constexpr double kAlbedo = 0.5;
 constexpr double kEmission = 0.5;
 
-/// Bounds the probability that `paths` paths which end at each vertex with probability `end` have so many vertices in
-/// all, or more to the same side of the mean.
+/// Bounds the probability that `paths` paths which end at each vertex with probability `end` have so many
+/// vertices in all, or more to the same side of the mean.
 double vertices_tail_bound(double vertices, double paths, double end) {
   const bool few = vertices * end < paths;
-  // Few: already `vertices` trials had all the ends. Many: without the last trial, an end, one end was missing.
+  // Few: already `vertices` trials had all the ends. Many: without the last trial, an end, one end was
+  // missing.
   return few ? test_support::binomial_tail_bound(paths, vertices, end)
              : test_support::binomial_tail_bound(paths - 1, vertices - 1, end);
 }
@@ -73,10 +75,12 @@ TEST(Furnace, WithoutRouletteEveryPathIsOne) {
   for (const double value : result.film.rgb()) ASSERT_NEAR(value, 1.0, 1e-10);
 }
 
-/// Tests every pixel and the whole film. Direct light from close by, over an edge, is rare and bright: P(path > x) falls
-/// as x^-3/2, which has no variance, and no statistic of it is normal. So paths are clipped, which makes means smaller by
-/// at most the given amounts, and judged by a bound that holds for all bounded variables.
-void expect_ones(const Scene& scene, int samples, double clip, double clipped_of_film, double clipped_of_pixel) {
+/// Tests every pixel and the whole film. Direct light from close by, over an edge, is rare and bright: P(path
+/// > x) falls as x^-3/2, which has no variance, and no statistic of it is normal. So paths are clipped, which
+/// makes means smaller by at most the given amounts, and judged by a bound that holds for all bounded
+/// variables.
+void expect_ones(const Scene& scene, int samples, double clip, double clipped_of_film,
+                 double clipped_of_pixel) {
   const std::vector<RadianceRecord> paths = native_paths(scene, render_options(Program::full, samples));
   const int pixels = scene.film.width * scene.film.height;
   ASSERT_EQ(paths.size(), std::size_t(samples) * std::size_t(pixels));
@@ -100,7 +104,8 @@ void expect_ones(const Scene& scene, int samples, double clip, double clipped_of
     const double error = test_support::bounded_mean_error(variance, count, clip, probability);
     const std::string where = film ? "the film" : "pixel " + std::to_string(entry);
     EXPECT_LT(mean - error, 1.0) << where << ": " << mean << " +- " << error;
-    EXPECT_GT(mean + error, 1.0 - (film ? clipped_of_film : clipped_of_pixel)) << where << ": " << mean << " +- " << error;
+    EXPECT_GT(mean + error, 1.0 - (film ? clipped_of_film : clipped_of_pixel))
+        << where << ": " << mean << " +- " << error;
   }
 }
 
@@ -110,7 +115,8 @@ TEST(Furnace, EveryPixelOfASphereIsOneWithDirectLight) {
 }
 
 TEST(Furnace, EveryPixelOfACubeIsOneWithDirectLight) {
-  // A separate simulation of 10^7 paths that start anywhere clips 0.038; pixels that show an edge at most thrice that.
+  // A separate simulation of 10^7 paths that start anywhere clips 0.038; pixels that show an edge at most
+  // thrice that.
   expect_ones(closed_cube(kAlbedo, kEmission, {12, 10}), 16384, 8.5, 0.05, 0.115);
 }
 
@@ -142,13 +148,15 @@ TEST(Furnace, RouletteBelowTheAlbedoKeepsTheMean) {
   options.program.roulette_start = 2;
   constexpr double kWeight = kAlbedo / 0.4;
   const std::vector<RadianceRecord> paths = native_paths(closed_cube(kAlbedo, kEmission, {40, 40}), options);
-  // A path of k vertices after the second has the mean and the variance of a geometric sum of growing weights.
+  // A path of k vertices after the second has the mean and the variance of a geometric sum of growing
+  // weights.
   constexpr double kVertices = 40;
   double mean = 0;
   double square = 0;
   for (double k = 0; k < kVertices; ++k) {
     const double probability = std::pow(0.4, k) * 0.6;
-    const double value = kEmission * (1 + kAlbedo + kAlbedo * kAlbedo * (std::pow(kWeight, k + 1) - 1) / (kWeight - 1));
+    const double value =
+        kEmission * (1 + kAlbedo + kAlbedo * kAlbedo * (std::pow(kWeight, k + 1) - 1) / (kWeight - 1));
     mean += probability * value;
     square += probability * value * value;
   }

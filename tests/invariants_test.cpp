@@ -1,4 +1,5 @@
-// What design.md, section 7, promises of every run, on small images: equal bits, equal cycles, equal statistics.
+// What design.md, section 7, promises of every run, on small images: equal bits, equal cycles, equal
+// statistics.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -71,13 +72,11 @@ std::vector<Variation> firmware_variations() {
     }
   }
   for (const int blocks : {1, 2, 3, 7, 40})
-    variations.push_back({std::to_string(blocks) + " blocks", [=](RenderOptions& options) {
-                            options.program.bin_blocks = blocks;
-                          }});
+    variations.push_back({std::to_string(blocks) + " blocks",
+                          [=](RenderOptions& options) { options.program.bin_blocks = blocks; }});
   for (const int vertices : {4, 8, 64})
-    variations.push_back({std::to_string(vertices) + " vertices a slot", [=](RenderOptions& options) {
-                            options.program.slot_vertices = vertices;
-                          }});
+    variations.push_back({std::to_string(vertices) + " vertices a slot",
+                          [=](RenderOptions& options) { options.program.slot_vertices = vertices; }});
   variations.push_back({"one block of n 1 and short slots", [](RenderOptions& options) {
                           options.program.bin_blocks = 1;
                           options.program.slot_vertices = 4;
@@ -88,23 +87,23 @@ std::vector<Variation> firmware_variations() {
 std::vector<Variation> chip_variations() {
   std::vector<Variation> variations;
   for (const int pes : {16, 32, 96, 128, 256})
-    variations.push_back({std::to_string(pes) + " PEs", [=](RenderOptions& options) { options.chip.chip.pes = pes; }});
+    variations.push_back(
+        {std::to_string(pes) + " PEs", [=](RenderOptions& options) { options.chip.chip.pes = pes; }});
   for (const Level level : {Level::x86_64_v2, Level::x86_64_v3, Level::x86_64_v4}) {
     if (level > testbench::widest_level()) continue;
-    variations.push_back({"level v" + std::to_string(2 + int(level)), [=](RenderOptions& options) {
-                            options.level = level;
-                          }});
+    variations.push_back(
+        {"level v" + std::to_string(2 + int(level)), [=](RenderOptions& options) { options.level = level; }});
   }
-  for (const auto arbitration : {model::PioArbitration::strict_fifo, model::PioArbitration::reads_overtake_writes,
-                                 model::PioArbitration::queue_per_direction}) {
+  for (const auto arbitration :
+       {model::PioArbitration::strict_fifo, model::PioArbitration::reads_overtake_writes,
+        model::PioArbitration::queue_per_direction}) {
     variations.push_back({"arbitration " + std::to_string(int(arbitration)), [=](RenderOptions& options) {
                             options.chip.pio.arbitration = arbitration;
                             options.program.n = 3;
                           }});
   }
-  variations.push_back({"consolidation", [](RenderOptions& options) {
-                          options.chip.pio.consolidate_equal_addresses = true;
-                        }});
+  variations.push_back(
+      {"consolidation", [](RenderOptions& options) { options.chip.pio.consolidate_equal_addresses = true; }});
   variations.push_back({"slow PIO, short queue", [](RenderOptions& options) {
                           options.chip.pio.setup_cycles = 5000;
                           options.chip.pio.queue_depth = 1;
@@ -125,7 +124,8 @@ std::vector<Variation> all_variations() {
 }
 
 TEST_F(Invariants, EveryWayToRunGivesTheSameBits) {
-  for (const auto& [film, samples] : {std::pair{FilmSize{1, 1}, 7}, {FilmSize{3, 2}, 5}, {FilmSize{17, 5}, 24}}) {
+  for (const auto& [film, samples] :
+       {std::pair{FilmSize{1, 1}, 7}, {FilmSize{3, 2}, 5}, {FilmSize{17, 5}, 24}}) {
     const Scene scene = small_cornell_box(film);
     for (const Program program : {Program::segments, Program::full}) {
       const std::string expected =
@@ -134,7 +134,8 @@ TEST_F(Invariants, EveryWayToRunGivesTheSameBits) {
         RenderOptions options = render_options(program, samples);
         variation.apply(options);
         if (options.program.n > options.program.bin_blocks) continue;
-        const std::string name = variation.name + ", " + std::to_string(film.width) + " x " + std::to_string(film.height);
+        const std::string name =
+            variation.name + ", " + std::to_string(film.width) + " x " + std::to_string(film.height);
         EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), expected) << name << ", native";
         EXPECT_EQ(on_chip(scene, options).film.sha256(), expected) << name;
         if (program != Program::full) continue;
@@ -237,7 +238,8 @@ class SpanChecker : public model::ControlObserver {
       EXPECT_EQ(start, last_finish_);
     }
     EXPECT_LT(start, finish);
-    const bool on_semaphore = cause == model::CycleCause::semaphore || cause == model::CycleCause::wait_load ||
+    const bool on_semaphore = cause == model::CycleCause::semaphore ||
+                              cause == model::CycleCause::wait_load ||
                               cause == model::CycleCause::wait_save || cause == model::CycleCause::wait_host;
     EXPECT_EQ(semaphore >= 0, on_semaphore) << model::cycle_cause_name(cause);
     cycles[std::size_t(cause)] += finish - start;
@@ -264,16 +266,19 @@ TEST_F(Invariants, AnObserverSeesEveryCycleAndChangesNone) {
   for (const Program program : {Program::segments, Program::full}) {
     const RenderOptions options = render_options(program, 24);
     const testbench::ChipStatistics expected = *on_chip(scene, options).chip;
-    for (const model::Cycles sync_cycles : {model::Cycles{1}, model::Cycles{1000}, model::Cycles{100000000}}) {
+    for (const model::Cycles sync_cycles :
+         {model::Cycles{1}, model::Cycles{1000}, model::Cycles{100000000}}) {
       new_context();
-      const testbench::MonoImage image = testbench::make_mono_image(scene, options.chip.chip.pes, options.program);
+      const testbench::MonoImage image =
+          testbench::make_mono_image(scene, options.chip.chip.pes, options.program);
       testbench::Film film(scene.film, testbench::film_scale(scene));
       model::Csx600 chip("chip", options.chip);
       testbench::HostPc host("host", chip, image, film);
       SpanChecker checker;
       chip.control_unit.set_observer(&checker, sync_cycles);
       chip.control_unit.load([&](cn::Machine& machine) {
-        path_tracer::PathTracer(machine, path_tracer::kernels(options.level), options.program, image.layout, options.work)
+        path_tracer::PathTracer(machine, path_tracer::kernels(options.level), options.program, image.layout,
+                                options.work)
             .run({});
       });
       sc_core::sc_start();

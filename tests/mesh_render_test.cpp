@@ -41,7 +41,8 @@ TEST_F(MeshRender, SphereIsSeenWhereItIs) {
     const glm::dvec3 mean = result.film.mean(pixel);
     if (mean.x > 3 * mean.y) ++red_pixels;
   }
-  // A disc of radius 0.71 (0.7 seen from 4 away) in a picture 2 * 4 * tan(20 degrees) = 2.91 high: 107 of 24 x 32 pixels.
+  // A disc of radius 0.71 (0.7 seen from 4 away) in a picture 2 * 4 * tan(20 degrees) = 2.91 high: 107 of 24
+  // x 32 pixels.
   EXPECT_NEAR(red_pixels, 107, 12);
 }
 

@@ -31,14 +31,17 @@ Record record(const MonoImage& image, cn::MonoPointer<Record> first, int index =
   return result;
 }
 
-/// Two lights of areas 2 and 1 and of radiances 3 and 12 (sums of channels), and a dark triangle between them.
+/// Two lights of areas 2 and 1 and of radiances 3 and 12 (sums of channels), and a dark triangle between
+/// them.
 Scene three_triangles() {
   Scene scene;
   scene.name = "three";
   scene.film = {6, 4};
   scene.camera.position = {1, 2, 3};
   scene.camera.vertical_field_of_view_radians = 0.8;
-  scene.materials = {{"dark", {0.1, 0.2, 0.3}, {0, 0, 0}}, {"dim", {0, 0, 0}, {1, 1, 1}}, {"bright", {0.5, 0, 0}, {3, 4, 5}}};
+  scene.materials = {{"dark", {0.1, 0.2, 0.3}, {0, 0, 0}},
+                     {"dim", {0, 0, 0}, {1, 1, 1}},
+                     {"bright", {0.5, 0, 0}, {3, 4, 5}}};
   scene.triangles = {{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, 1},
                      {{{0, 0, 5}, {1, 0, 5}, {0, 1, 5}}, 0},
                      {{{0, 7, 0}, {0, 7, 2}, {1, 7, 0}}, 2}};
@@ -128,8 +131,8 @@ TEST(MonoImage, CameraSpansTheFieldOfView) {
   EXPECT_EQ(camera.height, 4);
   const auto expect_direction = [&](double x, double y, double to_right, double up) {
     const double half = std::tan(0.4);  // of the height; a pixel is square
-    const glm::dvec3 expected =
-        glm::normalize(scene.camera.direction + right * (to_right * half * 1.5) + scene.camera.up * (up * half));
+    const glm::dvec3 expected = glm::normalize(scene.camera.direction + right * (to_right * half * 1.5) +
+                                               scene.camera.up * (up * half));
     EXPECT_LT(glm::length(direction(camera, x, y) - expected), 1e-15) << x << ", " << y;
   };
   expect_direction(3, 2, 0, 0);
@@ -214,7 +217,8 @@ TEST(Faces, SlantedPlanesAreRecognisedInSpiteOfRounding) {
   };
   std::vector<Triangle> triangles;
   for (int i = 0; i < 20; ++i) {
-    const glm::dvec3 p[4] = {turned(i / 3.0, 0), turned((i + 1) / 3.0, 0), turned((i + 1) / 3.0, 1), turned(i / 3.0, 1)};
+    const glm::dvec3 p[4] = {turned(i / 3.0, 0), turned((i + 1) / 3.0, 0), turned((i + 1) / 3.0, 1),
+                             turned(i / 3.0, 1)};
     triangles.push_back({{p[0], p[1], p[2]}, 0});
     triangles.push_back({{p[0], p[2], p[3]}, 0});
   }

@@ -61,9 +61,9 @@ TEST(ProgramConfigTest, ErrorsNameArgumentValueAndWhatIsAllowed) {
   config.bin_blocks = 4;
   EXPECT_EQ(error_of(config), "n: found 5, allowed is at most the bin length, 4 blocks");
   for (const int vertices : {-4, 0, 2, 6, 17})
-    EXPECT_EQ(
-        error_of(with(&ProgramConfig::slot_vertices, vertices)),
-        "vertices a path slot: found " + std::to_string(vertices) + ", allowed is a positive multiple of 4 up to 4096");
+    EXPECT_EQ(error_of(with(&ProgramConfig::slot_vertices, vertices)),
+              "vertices a path slot: found " + std::to_string(vertices) +
+                  ", allowed is a positive multiple of 4 up to 4096");
   EXPECT_EQ(error_of(with(&ProgramConfig::roulette_start, -1)),
             "roulette start: found -1, allowed is 0 or more segments");
   for (const double survival : {0.0, 1.0, -0.5, std::numeric_limits<double>::quiet_NaN()})

@@ -69,9 +69,8 @@ TEST(Processes, NoJobsNoResults) {
 
 TEST(Processes, EachJobHasAProcessOfItsOwn) {
   int mine = 1;
-  const std::vector<std::string> results = run_in_processes(Jobs(3, [&mine] {
-    return std::to_string(getpid()) + " " + std::to_string(mine++);
-  }), 2);
+  const std::vector<std::string> results = run_in_processes(
+      Jobs(3, [&mine] { return std::to_string(getpid()) + " " + std::to_string(mine++); }), 2);
   EXPECT_EQ(mine, 1);
   for (const std::string& result : results) {
     EXPECT_EQ(result.substr(result.find(' ')), " 1");
@@ -89,12 +88,14 @@ TEST(Processes, ResultsMayBeLongerThanAPipe) {
 TEST(Processes, AtMostSoManyRunAtATime) {
   for (const int at_once : {1, 3}) {
     const Journal journal;
-    run_in_processes(Jobs(9, [&journal] {
-      journal.note('+');
-      sleep_milliseconds(40);
-      journal.note('-');
-      return std::string();
-    }), at_once);
+    run_in_processes(Jobs(9,
+                          [&journal] {
+                            journal.note('+');
+                            sleep_milliseconds(40);
+                            journal.note('-');
+                            return std::string();
+                          }),
+                     at_once);
     int running = 0;
     int most = 0;
     for (const char step : journal.text()) {
@@ -124,7 +125,8 @@ TEST(Processes, SlowJobDoesNotHoldTheOthersBack) {
 
 TEST(Processes, TellsAfterEachJob) {
   std::vector<int> told;
-  run_in_processes(Jobs(5, [] { return std::string("done"); }), 2, [&](int finished) { told.push_back(finished); });
+  run_in_processes(Jobs(5, [] { return std::string("done"); }), 2,
+                   [&](int finished) { told.push_back(finished); });
   EXPECT_EQ(told, (std::vector<int>{1, 2, 3, 4, 5}));
 }
 

@@ -1,5 +1,5 @@
-// How many PEs should the host execute together? Times the same intersection kernel with its lanes in strips of
-// different widths, up to the whole array at once. Build with `cmake --build --preset release --target
+// How many PEs should the host execute together? Times the same intersection kernel with its lanes in strips
+// of different widths, up to the whole array at once. Build with `cmake --build --preset release --target
 // strip_width_benchmark`; it is compiled for x86-64-v3.
 
 #include <array>
@@ -72,8 +72,8 @@ Wide<lanes> dot(const Wide3<lanes>& a, const B& b) {
 
 /// Keeps the nearest distance of one strip, after Moeller and Trumbore 1997.
 template <int lanes>
-[[gnu::flatten, gnu::noinline]] void intersect_strip(const std::vector<Triangle>& triangles, const double* rays,
-                                                     int first_pe, double* nearest_out) {
+[[gnu::flatten, gnu::noinline]] void intersect_strip(const std::vector<Triangle>& triangles,
+                                                     const double* rays, int first_pe, double* nearest_out) {
   Wide3<lanes> origin, direction;
   for (std::size_t k = 0; k < 3; ++k) {
     std::memcpy(&origin[k], rays + k * kPes + first_pe, sizeof(origin[k]));
@@ -116,8 +116,8 @@ void time_width(const std::vector<Triangle>& triangles, const std::vector<double
     }
     best_seconds = std::min(best_seconds, std::chrono::duration<double>(Clock::now() - start).count());
   }
-  std::printf("%4d PEs together: %6.1f million rays/s  (checksum %g)\n", lanes, 1e-6 * kBlocks * kPes / best_seconds,
-              checksum);
+  std::printf("%4d PEs together: %6.1f million rays/s  (checksum %g)\n", lanes,
+              1e-6 * kBlocks * kPes / best_seconds, checksum);
 }
 
 }  // namespace
@@ -131,7 +131,8 @@ int main() {
       for (double& component : *corner) component = uniform(generator);
   std::vector<double> rays(6 * kPes);
   for (double& component : rays) component = uniform(generator);
-  std::printf("%d rays against %d triangles, double precision, %d lanes a register\n", kPes, kTriangles, kNativeLanes);
+  std::printf("%d rays against %d triangles, double precision, %d lanes a register\n", kPes, kTriangles,
+              kNativeLanes);
   time_width<4>(triangles, rays);
   time_width<8>(triangles, rays);
   time_width<16>(triangles, rays);

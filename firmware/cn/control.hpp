@@ -21,7 +21,8 @@ class EnableScope {
   /// Enables the complement of the condition within the outer scope: the else part.
   void invert() {
     issue(InstructionClass::enable);
-    strip.enabled = each_chunk<std::int64_t>([&](int i) { return outer_.chunk[i] & ~strip.enabled.chunk[i]; });
+    strip.enabled =
+        each_chunk<std::int64_t>([&](int i) { return outer_.chunk[i] & ~strip.enabled.chunk[i]; });
   }
 
   void narrow(const mask& condition) {
@@ -33,8 +34,8 @@ class EnableScope {
   MaskLanes outer_;
 };
 
-/// Cn's if on a poly condition. The control unit never jumps over a branch on its own: both are issued, PEs that are
-/// not concerned are disabled.
+/// Cn's if on a poly condition. The control unit never jumps over a branch on its own: both are issued, PEs
+/// that are not concerned are disabled.
 template <class Then>
 inline void poly_if(const mask& condition, Then&& then) {
   EnableScope scope(condition);
@@ -49,10 +50,12 @@ inline void poly_if(const mask& condition, Then&& then, Otherwise&& otherwise) {
   otherwise();
 }
 
-inline bool any_enabled() { return mask_bits(strip.enabled) != 0; }
+inline bool any_enabled() {
+  return mask_bits(strip.enabled) != 0;
+}
 
-/// What a Cn programmer writes as `if (any(condition)) { poly if (condition) ... }`: pays for a reduction over all PEs,
-/// and the body is not issued when no PE wants it.
+/// What a Cn programmer writes as `if (any(condition)) { poly if (condition) ... }`: pays for a reduction
+/// over all PEs, and the body is not issued when no PE wants it.
 template <class Body>
 inline void poly_if_any(const mask& condition, Body&& body) {
   issue(InstructionClass::reduce);
@@ -61,8 +64,8 @@ inline void poly_if_any(const mask& condition, Body&& body) {
   if (any_enabled()) run_node(region, 0, body);
 }
 
-/// Cn's while on a poly condition: runs as long as it holds on any PE; a PE that fails it is off for the rest of the
-/// loop. `condition` is evaluated before each pass and once more to leave.
+/// Cn's while on a poly condition: runs as long as it holds on any PE; a PE that fails it is off for the rest
+/// of the loop. `condition` is evaluated before each pass and once more to leave.
 template <class Condition, class Body>
 inline void poly_while(Condition&& condition, Body&& body) {
   const std::size_t region = strip.next_region++;

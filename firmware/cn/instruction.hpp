@@ -8,8 +8,9 @@
 
 namespace cn {
 
-/// Classes of poly instructions that differ in cost. `sram` counts 4-byte words, the width of the path between a PE's
-/// SRAM and its registers (shared reference: 96 GB/s = 4 B a PE and cycle); every other class counts instructions.
+/// Classes of poly instructions that differ in cost. `sram` counts 4-byte words, the width of the path
+/// between a PE's SRAM and its registers (shared reference: 96 GB/s = 4 B a PE and cycle); every other class
+/// counts instructions.
 enum class InstructionClass : std::uint8_t {
   fp64_add,
   fp64_mul,
@@ -40,9 +41,9 @@ enum class InstructionClass : std::uint8_t {
 inline constexpr std::size_t kInstructionClasses = static_cast<std::size_t>(InstructionClass::mono) + 1;
 
 inline constexpr std::array<std::string_view, kInstructionClasses> kInstructionClassNames = {
-    "fp64_add",  "fp64_mul",  "fp64_div",  "fp64_sqrt", "fp64_sincos", "fp64_exp", "fp64_log", "fp32_add",
-    "fp32_mul",  "fp32_div",  "fp32_sqrt", "int16_alu", "int32_alu",   "int64_alu", "int16_mul", "int32_mul",
-    "int64_mul", "move",      "convert",   "enable",    "sram",        "swazzle",   "reduce",   "mono"};
+    "fp64_add",  "fp64_mul", "fp64_div",  "fp64_sqrt", "fp64_sincos", "fp64_exp",  "fp64_log",  "fp32_add",
+    "fp32_mul",  "fp32_div", "fp32_sqrt", "int16_alu", "int32_alu",   "int64_alu", "int16_mul", "int32_mul",
+    "int64_mul", "move",     "convert",   "enable",    "sram",        "swazzle",   "reduce",    "mono"};
 
 /// How many instructions of each class were issued.
 struct IssueCounts {
@@ -58,10 +59,11 @@ struct IssueCounts {
   bool operator==(const IssueCounts& other) const { return by_class == other.by_class; }
 };
 
-/// What a kernel issued, shared by all PEs. Cost is data-independent except where a region runs "while any PE wants it":
-/// a kernel is executed strip by strip (strip.hpp), so each data-dependent region and each of its iterations is a node
-/// that the first strip to reach it fills in; later strips issue the same instructions there and add only their enabled
-/// lanes. The sum over all nodes is what a chip that runs all PEs in lock step issues.
+/// What a kernel issued, shared by all PEs. Cost is data-independent except where a region runs "while any PE
+/// wants it": a kernel is executed strip by strip (strip.hpp), so each data-dependent region and each of its
+/// iterations is a node that the first strip to reach it fills in; later strips issue the same instructions
+/// there and add only their enabled lanes. The sum over all nodes is what a chip that runs all PEs in lock
+/// step issues.
 class IssueTree {
  public:
   struct Node;

@@ -6,22 +6,24 @@
 
 namespace cn {
 
-/// A poly program between two points at which the control unit does something else: a name for statistics and waves, and
-/// the entry point of the x86-64 level in use. `run` executes it for all PEs that `enabled` names, leaves what was
-/// issued in `issued`, and runs nothing when no PE is enabled.
+/// A poly program between two points at which the control unit does something else: a name for statistics and
+/// waves, and the entry point of the x86-64 level in use. `run` executes it for all PEs that `enabled` names,
+/// leaves what was issued in `issued`, and runs nothing when no PE is enabled.
 template <class Arguments>
 struct Kernel {
   const char* name = nullptr;
-  void (*run)(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled, IssueTree& issued) = nullptr;
+  void (*run)(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled,
+              IssueTree& issued) = nullptr;
 };
 
-/// Runs `program(arguments)` strip by strip. Strips without an enabled PE are skipped by the host; the chip's cost is
-/// that of the instructions issued, which the other strips give.
+/// Runs `program(arguments)` strip by strip. Strips without an enabled PE are skipped by the host; the chip's
+/// cost is that of the instructions issued, which the other strips give.
 ///
-/// Flattened: a kernel is straight-line vector code; one operator left as a call keeps its operands out of registers and
-/// costs a factor of three.
+/// Flattened: a kernel is straight-line vector code; one operator left as a call keeps its operands out of
+/// registers and costs a factor of three.
 template <class Arguments, void (*program)(const Arguments&)>
-[[gnu::flatten]] void run_strips(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled, IssueTree& issued) {
+[[gnu::flatten]] void run_strips(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled,
+                                 IssueTree& issued) {
   issued.clear();
   strip.poly_words = memory.words();
   strip.num_pes = memory.num_pes();
@@ -40,8 +42,9 @@ template <class Arguments, void (*program)(const Arguments&)>
   }
 }
 
-/// Keeps one condition a PE beyond the kernel, for the control unit to count or to enable PEs of a transfer by. PEs that
-/// are not enabled read as false. `kept` must hold no bits of PEs that the kernel did not run for.
+/// Keeps one condition a PE beyond the kernel, for the control unit to count or to enable PEs of a transfer
+/// by. PEs that are not enabled read as false. `kept` must hold no bits of PEs that the kernel did not run
+/// for.
 inline void keep(const mask& condition, LaneMask& kept) {
   issue(InstructionClass::sram);
   kept.set_strip_bits(strip.first_pe / kStripLanes, mask_bits(condition.lanes()) & mask_bits(strip.enabled));

@@ -10,8 +10,9 @@
 
 namespace cn {
 
-/// PEs that the host executes together. Eight doubles are one register of AVX-512, two of AVX2 and four of SSE2. Wider
-/// strips gain nothing (tests/strip_width_benchmark.cpp), and with narrow ones the array's width is a run-time number.
+/// PEs that the host executes together. Eight doubles are one register of AVX-512, two of AVX2 and four of
+/// SSE2. Wider strips gain nothing (tests/strip_width_benchmark.cpp), and with narrow ones the array's width
+/// is a run-time number.
 inline constexpr int kStripLanes = 8;
 
 /// Native vector width of the level this file is compiled for.
@@ -23,8 +24,8 @@ inline constexpr std::size_t kNativeBytes = 32;
 inline constexpr std::size_t kNativeBytes = 16;
 #endif
 
-/// One value a PE for the PEs of a strip, in as many native vectors as that takes. GCC splits vectors wider than the
-/// machine's into scalars at comparisons and selects, hence the chunks.
+/// One value a PE for the PEs of a strip, in as many native vectors as that takes. GCC splits vectors wider
+/// than the machine's into scalars at comparisons and selects, hence the chunks.
 template <class T>
 struct Lanes {
   static constexpr std::size_t kBytes = kStripLanes * sizeof(T);
@@ -64,8 +65,8 @@ inline Lanes<R> each_chunk_of(F& f, std::index_sequence<i...>) {
   return {{f(std::integral_constant<int, int(i)>())...}};
 }
 
-/// Applies `f` chunk by chunk. Spelled out by index instead of a loop: GCC keeps a struct of vectors in registers only if
-/// it never sees a variable index into it.
+/// Applies `f` chunk by chunk. Spelled out by index instead of a loop: GCC keeps a struct of vectors in
+/// registers only if it never sees a variable index into it.
 template <class R, class F>
 inline Lanes<R> each_chunk(F&& f) {
   return each_chunk_of<R>(f, std::make_index_sequence<std::size_t(Lanes<R>::kChunks)>());
@@ -106,7 +107,8 @@ inline Lanes<T> select_lanes(const MaskLanes& mask, const Lanes<T>& if_set, cons
   }
 }
 
-/// Products of the low 32 bits of each lane. Spelled out because GCC makes a full 64-bit product of it otherwise.
+/// Products of the low 32 bits of each lane. Spelled out because GCC makes a full 64-bit product of it
+/// otherwise.
 inline Lanes<std::uint64_t> multiply_low_words(const Lanes<std::uint64_t>& a, const Lanes<std::uint64_t>& b) {
   return each_chunk<std::uint64_t>([&](int i) {
     using Chunk = Lanes<std::uint64_t>::Chunk;

@@ -15,8 +15,8 @@ void check_span(const PolySpan& span, const PolyMemory& memory) {
 
 void check_alignment(const Transfer& transfer, int num_pes) {
   const auto fault = [&](const std::string& what, std::uint64_t found) {
-    throw MachineFault("transfer of poly offset " + std::to_string(transfer.poly.offset_bytes) + ": " + what + " is " +
-                       std::to_string(found) + ", must be a multiple of 8");
+    throw MachineFault("transfer of poly offset " + std::to_string(transfer.poly.offset_bytes) + ": " + what +
+                       " is " + std::to_string(found) + ", must be a multiple of 8");
   };
   if (transfer.poly.size_bytes % 8 != 0) fault("size", std::uint64_t(transfer.poly.size_bytes));
   if (transfer.poly.offset_bytes % 8 != 0) fault("poly offset", std::uint64_t(transfer.poly.offset_bytes));
@@ -33,14 +33,16 @@ void check_alignment(const Transfer& transfer, int num_pes) {
 
 Machine::Machine(int num_pes, int poly_bytes_per_pe) : poly_memory_(num_pes, poly_bytes_per_pe) {}
 
-void Machine::async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source, const LaneMask& enabled) {
+void Machine::async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source,
+                             const LaneMask& enabled) {
   const Transfer transfer{Direction::mono_to_poly, destination, source, enabled, done};
   check_span(transfer.poly, poly_memory_);
   check_alignment(transfer, num_pes());
   start_transfer(transfer);
 }
 
-void Machine::async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source, const LaneMask& enabled) {
+void Machine::async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source,
+                             const LaneMask& enabled) {
   const Transfer transfer{Direction::poly_to_mono, source, destination, enabled, done};
   check_span(transfer.poly, poly_memory_);
   check_alignment(transfer, num_pes());
@@ -64,8 +66,8 @@ int Machine::count(const LaneMask& lanes) {
 }
 
 int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
-  // A running count by doubling distance: in round r each PE adds the count of the PE 2^r to its left, which takes 2^r
-  // steps along the path. The result is known without walking it; tests compare with the walk.
+  // A running count by doubling distance: in round r each PE adds the count of the PE 2^r to its left, which
+  // takes 2^r steps along the path. The result is known without walking it; tests compare with the walk.
   std::uint64_t steps = 0;
   std::uint64_t rounds = 0;
   for (int distance = 1; distance < num_pes(); distance *= 2, ++rounds) steps += std::uint64_t(distance);
@@ -107,7 +109,11 @@ void Machine::swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour) {
   retire(from_neighbour < 0 ? "swazzle_up" : "swazzle_down", issued_);
 }
 
-void Machine::swazzle_up(PolyField<std::uint64_t> value) { swazzle_rows(value, -1); }
-void Machine::swazzle_down(PolyField<std::uint64_t> value) { swazzle_rows(value, +1); }
+void Machine::swazzle_up(PolyField<std::uint64_t> value) {
+  swazzle_rows(value, -1);
+}
+void Machine::swazzle_down(PolyField<std::uint64_t> value) {
+  swazzle_rows(value, +1);
+}
 
 }  // namespace cn

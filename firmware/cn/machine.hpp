@@ -10,14 +10,16 @@
 
 namespace cn {
 
-/// A firmware fault: unaligned transfer, address outside mono memory, no semaphore left, a wait that nothing can end.
+/// A firmware fault: unaligned transfer, address outside mono memory, no semaphore left, a wait that nothing
+/// can end.
 class MachineFault : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The chip as firmware sees it: one control unit with its mono memory, a PE array with its poly memory, and the
-/// programmed I/O between them. What it costs, and when a transfer is over, is the implementation's business.
+/// The chip as firmware sees it: one control unit with its mono memory, a PE array with its poly memory, and
+/// the programmed I/O between them. What it costs, and when a transfer is over, is the implementation's
+/// business.
 class Machine {
  public:
   static constexpr int kSemaphores = 64;
@@ -39,10 +41,13 @@ class Machine {
     retire(kernel.name, issued_);
   }
 
-  /// Asynchronous copies between mono and poly memory; the PE array goes on computing. Only enabled PEs take part; a
-  /// transfer without any still signals `done`. Each PE's address and the size are multiples of 8 bytes.
-  void async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source, const LaneMask& enabled);
-  void async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source, const LaneMask& enabled);
+  /// Asynchronous copies between mono and poly memory; the PE array goes on computing. Only enabled PEs take
+  /// part; a transfer without any still signals `done`. Each PE's address and the size are multiples of 8
+  /// bytes.
+  void async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source,
+                      const LaneMask& enabled);
+  void async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source,
+                      const LaneMask& enabled);
 
   /// The addresses that PEs hold in a poly variable, plus a mono offset, for a gather or scatter.
   MonoPlaces places_in(PolyField<MonoAddress> addresses, std::uint64_t offset_bytes = 0) {
@@ -52,7 +57,9 @@ class Machine {
   /// A semaphore of its own for each caller; `name` appears in waves and fault messages.
   Semaphore allocate_semaphore(const std::string& name);
   const std::vector<std::string>& semaphore_names() const { return semaphore_names_; }
-  const std::string& semaphore_name(Semaphore semaphore) const { return semaphore_names_.at(std::size_t(semaphore.index)); }
+  const std::string& semaphore_name(Semaphore semaphore) const {
+    return semaphore_names_.at(std::size_t(semaphore.index));
+  }
 
   virtual void sem_signal(Semaphore semaphore) = 0;
   virtual void sem_wait(Semaphore semaphore) = 0;
@@ -60,11 +67,13 @@ class Machine {
   /// How many PEs hold true. A reduction that the control unit reads, with its cost.
   int count(const LaneMask& lanes);
 
-  /// Ascending numbers 0, 1, 2, ... to the PEs of `chosen`, from left to right, over the PE-to-PE path (paper, section 4);
-  /// returns how many there are. Used as addresses, they compact what the chosen PEs save.
+  /// Ascending numbers 0, 1, 2, ... to the PEs of `chosen`, from left to right, over the PE-to-PE path
+  /// (paper, section 4); returns how many there are. Used as addresses, they compact what the chosen PEs
+  /// save.
   int number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number);
 
-  /// `value` of the left neighbour (up) or the right one (down); the PE at the end of the path keeps what it has.
+  /// `value` of the left neighbour (up) or the right one (down); the PE at the end of the path keeps what it
+  /// has.
   void swazzle_up(PolyField<std::uint64_t> value);
   void swazzle_down(PolyField<std::uint64_t> value);
 
@@ -82,7 +91,8 @@ class Machine {
   }
 
   /// From here on nothing costs time, until timed(true): for work that a timed program leaves to others.
-  /// It sees the data of every transfer started before it, waited for or not, and does not use up their signals.
+  /// It sees the data of every transfer started before it, waited for or not, and does not use up their
+  /// signals.
   virtual void timed(bool on) = 0;
 
  protected:

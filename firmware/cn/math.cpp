@@ -10,17 +10,35 @@ using Chunk = Lanes<double>::Chunk;
 // SLEEF's "cinz" functions are bit-reproducible: the same result on every vector extension, without fused
 // multiply-add. One set of names a native width.
 #if defined(__AVX512F__)
-auto sincos_chunk(Chunk a) { return Sleef_cinz_sincosd8_u10avx512fnofma(a); }
-Chunk exp_chunk(Chunk a) { return Sleef_cinz_expd8_u10avx512fnofma(a); }
-Chunk log_chunk(Chunk a) { return Sleef_cinz_logd8_u10avx512fnofma(a); }
+auto sincos_chunk(Chunk a) {
+  return Sleef_cinz_sincosd8_u10avx512fnofma(a);
+}
+Chunk exp_chunk(Chunk a) {
+  return Sleef_cinz_expd8_u10avx512fnofma(a);
+}
+Chunk log_chunk(Chunk a) {
+  return Sleef_cinz_logd8_u10avx512fnofma(a);
+}
 #elif defined(__AVX2__)
-auto sincos_chunk(Chunk a) { return Sleef_cinz_sincosd4_u10avx(a); }
-Chunk exp_chunk(Chunk a) { return Sleef_cinz_expd4_u10avx(a); }
-Chunk log_chunk(Chunk a) { return Sleef_cinz_logd4_u10avx(a); }
+auto sincos_chunk(Chunk a) {
+  return Sleef_cinz_sincosd4_u10avx(a);
+}
+Chunk exp_chunk(Chunk a) {
+  return Sleef_cinz_expd4_u10avx(a);
+}
+Chunk log_chunk(Chunk a) {
+  return Sleef_cinz_logd4_u10avx(a);
+}
 #else
-auto sincos_chunk(Chunk a) { return Sleef_cinz_sincosd2_u10sse2(a); }
-Chunk exp_chunk(Chunk a) { return Sleef_cinz_expd2_u10sse2(a); }
-Chunk log_chunk(Chunk a) { return Sleef_cinz_logd2_u10sse2(a); }
+auto sincos_chunk(Chunk a) {
+  return Sleef_cinz_sincosd2_u10sse2(a);
+}
+Chunk exp_chunk(Chunk a) {
+  return Sleef_cinz_expd2_u10sse2(a);
+}
+Chunk log_chunk(Chunk a) {
+  return Sleef_cinz_logd2_u10sse2(a);
+}
 #endif
 
 }  // namespace

@@ -28,8 +28,8 @@ inline poly<double> abs(const poly<double>& a) {
   issue(InstructionClass::int16_alu);
   const auto bits = bit_cast_lanes<std::uint64_t>(a.lanes());
   constexpr std::uint64_t kAllButSign = ~(std::uint64_t{1} << 63);
-  return poly<double>(bit_cast_lanes<double>(
-      each_chunk<std::uint64_t>([&](int i) { return bits.chunk[i] & kAllButSign; })));
+  return poly<double>(
+      bit_cast_lanes<double>(each_chunk<std::uint64_t>([&](int i) { return bits.chunk[i] & kAllButSign; })));
 }
 
 /// `a` with its sign changed where `by` is negative.
@@ -47,8 +47,8 @@ struct SineCosine {
   poly<double> cosine;
 };
 
-/// Both at once, from SLEEF's bit-reproducible functions without fused multiply-add: the same bits from every x86-64
-/// level, error below 1 ulp.
+/// Both at once, from SLEEF's bit-reproducible functions without fused multiply-add: the same bits from every
+/// x86-64 level, error below 1 ulp.
 SineCosine sincos(const poly<double>& radians);
 
 poly<double> exp(const poly<double>& a);

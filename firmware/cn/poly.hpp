@@ -7,8 +7,9 @@
 
 namespace cn {
 
-/// How a scalar type is held in host lanes and which instructions its operators are. Integers live in 64-bit lanes and
-/// are brought back into range after each operation, so a mask fits every type but float without conversion.
+/// How a scalar type is held in host lanes and which instructions its operators are. Integers live in 64-bit
+/// lanes and are brought back into range after each operation, so a mask fits every type but float without
+/// conversion.
 template <class T>
 struct PolyTraits;
 
@@ -95,8 +96,9 @@ class mask {
   MaskLanes lanes_;
 };
 
-/// A Cn poly variable: one T a PE. Operators compute all PEs of the strip and issue one instruction each; a mono operand
-/// stays a scalar. Assignment to an existing variable changes enabled PEs only; a new variable's disabled PEs are free.
+/// A Cn poly variable: one T a PE. Operators compute all PEs of the strip and issue one instruction each; a
+/// mono operand stays a scalar. Assignment to an existing variable changes enabled PEs only; a new variable's
+/// disabled PEs are free.
 template <class T>
 class poly {
  public:
@@ -211,7 +213,8 @@ class poly {
     if constexpr (sizeof(Lane) == sizeof(std::int64_t)) {
       return mask(each_chunk<std::int64_t>([&](int i) { return MaskLanes::Chunk(by_chunk(i)); }));
     } else {
-      return mask(each_lane<std::int64_t>([&](int i) { return by_lane(i) ? std::int64_t{-1} : std::int64_t{0}; }));
+      return mask(
+          each_lane<std::int64_t>([&](int i) { return by_lane(i) ? std::int64_t{-1} : std::int64_t{0}; }));
     }
   }
 
@@ -224,16 +227,19 @@ inline poly<To> convert(const poly<From>& from) {
   using ToLane = typename poly<To>::Lane;
   issue(InstructionClass::convert);
   if constexpr (std::is_same_v<To, double> && std::is_same_v<From, std::uint32_t>) {
-    // In the mantissa of 2^52 the integer is exact, and no vector extension before AVX-512 converts 64-bit lanes.
+    // In the mantissa of 2^52 the integer is exact, and no vector extension before AVX-512 converts 64-bit
+    // lanes.
     constexpr std::uint64_t kTwoTo52Bits = 0x4330000000000000u;
     const auto biased = bit_cast_lanes<double>(
         each_chunk<std::uint64_t>([&](int i) { return from.lanes().chunk[i] | kTwoTo52Bits; }));
     return poly<double>(each_chunk<double>([&](int i) { return biased.chunk[i] - 0x1p52; }));
   } else {
-    // Narrow numbers go through the signed 64-bit format, whose conversion is one instruction at every x86-64 level:
-    // out of range, too, all levels give the same bits. That of unsigned ones differs between AVX-512 and the others.
-    using Through = std::conditional_t<std::is_floating_point_v<From> && std::is_integral_v<To> && sizeof(To) < 8,
-                                       std::int64_t, ToLane>;
+    // Narrow numbers go through the signed 64-bit format, whose conversion is one instruction at every x86-64
+    // level: out of range, too, all levels give the same bits. That of unsigned ones differs between AVX-512
+    // and the others.
+    using Through =
+        std::conditional_t<std::is_floating_point_v<From> && std::is_integral_v<To> && sizeof(To) < 8,
+                           std::int64_t, ToLane>;
     return poly<To>(wrap_lanes<To>(each_lane<ToLane>(
         [&](int i) { return static_cast<ToLane>(static_cast<Through>(from.lanes()[i])); })));
   }
@@ -286,6 +292,8 @@ inline poly<std::int32_t> pe_num() {
   return poly<std::int32_t>(each_lane<std::int64_t>([&](int i) { return first + i; }));
 }
 
-inline int num_pes() { return strip.num_pes; }
+inline int num_pes() {
+  return strip.num_pes;
+}
 
 }  // namespace cn

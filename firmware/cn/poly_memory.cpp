@@ -16,8 +16,9 @@ int PolyMemory::used_bytes() const {
 PolySpan PolyMemory::allocate(const std::string& name, int size_bytes) {
   const PolySpan span{used_bytes(), (size_bytes + 7) / 8 * 8};
   if (span.offset_bytes + span.size_bytes > capacity_bytes_) {
-    throw PolyMemoryOverflow("poly SRAM overflow: buffer '" + name + "' needs " + std::to_string(span.size_bytes) +
-                                 " bytes a PE, " + std::to_string(capacity_bytes_ - span.offset_bytes) + " of " +
+    throw PolyMemoryOverflow("poly SRAM overflow: buffer '" + name + "' needs " +
+                                 std::to_string(span.size_bytes) + " bytes a PE, " +
+                                 std::to_string(capacity_bytes_ - span.offset_bytes) + " of " +
                                  std::to_string(capacity_bytes_) + " are free",
                              map());
   }
@@ -32,7 +33,8 @@ std::string PolyMemory::map() const {
     std::snprintf(numbers, sizeof(numbers), "%8d%8d  ", offset_bytes, size_bytes);
     text += numbers + name + '\n';
   };
-  for (const Buffer& buffer : buffers_) add_line(buffer.span.offset_bytes, buffer.span.size_bytes, buffer.name);
+  for (const Buffer& buffer : buffers_)
+    add_line(buffer.span.offset_bytes, buffer.span.size_bytes, buffer.name);
   add_line(used_bytes(), capacity_bytes_ - used_bytes(), "(free)");
   add_line(capacity_bytes_, kReservedBytes, "(PE number, reserved by the ABI)");
   return text;

@@ -16,7 +16,8 @@ struct PolySpan {
 /// Thrown when named buffers do not fit a PE's SRAM; the message is one line, the map says who holds what.
 class PolyMemoryOverflow : public std::runtime_error {
  public:
-  PolyMemoryOverflow(const std::string& message, std::string map) : std::runtime_error(message), map_(std::move(map)) {}
+  PolyMemoryOverflow(const std::string& message, std::string map)
+      : std::runtime_error(message), map_(std::move(map)) {}
   const std::string& map() const { return map_; }
 
  private:
@@ -24,7 +25,8 @@ class PolyMemoryOverflow : public std::runtime_error {
 };
 
 /// The SRAM of all PEs. Word w of PE p is kept at [w * num_pes + p], so that a kernel reads one variable of
-/// neighbouring PEs as a vector. Buffers have names and are only ever freed all at once, as static storage of a program.
+/// neighbouring PEs as a vector. Buffers have names and are only ever freed all at once, as static storage of
+/// a program.
 class PolyMemory {
  public:
   struct Buffer {

@@ -5,8 +5,8 @@
 
 namespace cn {
 
-/// A variable of type T at the same SRAM address in every PE. Reading and writing it are SRAM accesses; a write reaches
-/// enabled PEs only.
+/// A variable of type T at the same SRAM address in every PE. Reading and writing it are SRAM accesses; a
+/// write reaches enabled PEs only.
 template <class T>
 struct PolyField {
   static_assert(sizeof(T) == 4 || sizeof(T) == 8, "a narrower write would reach its neighbour in the word");
@@ -28,9 +28,8 @@ struct PolyField {
         }));
       } else {
         const int bits = shift();
-        return poly<T>(wrap_lanes<T>(each_chunk<Lane>([&](int i) {
-          return reinterpret_cast<typename Lanes<Lane>::Chunk>(words.chunk[i] >> bits);
-        })));
+        return poly<T>(wrap_lanes<T>(each_chunk<Lane>(
+            [&](int i) { return reinterpret_cast<typename Lanes<Lane>::Chunk>(words.chunk[i] >> bits); })));
       }
     }
   }
@@ -69,8 +68,8 @@ struct PolyField {
   }
 };
 
-/// A pointer to a Record in poly SRAM. Fields are named by member pointer: `ray.get(&RayRecord::origin)`. Records are
-/// plain structs of 4- and 8-byte members (and vec3<double>), laid out alike in mono memory.
+/// A pointer to a Record in poly SRAM. Fields are named by member pointer: `ray.get(&RayRecord::origin)`.
+/// Records are plain structs of 4- and 8-byte members (and vec3<double>), laid out alike in mono memory.
 template <class Record>
 class PolyPointer {
  public:
@@ -85,27 +84,28 @@ class PolyPointer {
   PolyPointer operator[](int index) const { return PolyPointer(offset_bytes_ + index * size_bytes()); }
 
   template <class T>
-  PolyField<T> field(T Record::* member) const {
+  PolyField<T> field(T Record::*member) const {
     return {offset_bytes_ + offset_of(member)};
   }
 
   template <class T>
-  poly<T> get(T Record::* member) const {
+  poly<T> get(T Record::*member) const {
     return field(member).read();
   }
   template <class T>
-  vec3<poly<T>> get(vec3<T> Record::* member) const {
+  vec3<poly<T>> get(vec3<T> Record::*member) const {
     const int offset = offset_bytes_ + offset_of(member);
     constexpr int kSize = static_cast<int>(sizeof(T));
-    return {PolyField<T>{offset}.read(), PolyField<T>{offset + kSize}.read(), PolyField<T>{offset + 2 * kSize}.read()};
+    return {PolyField<T>{offset}.read(), PolyField<T>{offset + kSize}.read(),
+            PolyField<T>{offset + 2 * kSize}.read()};
   }
 
   template <class T>
-  void set(T Record::* member, const poly<T>& value) const {
+  void set(T Record::*member, const poly<T>& value) const {
     field(member).write(value);
   }
   template <class T>
-  void set(vec3<T> Record::* member, const vec3<poly<T>>& value) const {
+  void set(vec3<T> Record::*member, const vec3<poly<T>>& value) const {
     const int offset = offset_bytes_ + offset_of(member);
     constexpr int kSize = static_cast<int>(sizeof(T));
     PolyField<T>{offset}.write(value.x);
@@ -115,10 +115,11 @@ class PolyPointer {
 
  private:
   template <class T>
-  static int offset_of(T Record::* member) {
+  static int offset_of(T Record::*member) {
     static_assert(sizeof(Record) % 8 == 0, "records are whole 8-byte words");
     static const Record probe{};
-    return static_cast<int>(reinterpret_cast<const char*>(&(probe.*member)) - reinterpret_cast<const char*>(&probe));
+    return static_cast<int>(reinterpret_cast<const char*>(&(probe.*member)) -
+                            reinterpret_cast<const char*>(&probe));
   }
 
   int offset_bytes_ = 0;

@@ -7,13 +7,14 @@
 
 namespace cn {
 
-/// The strip of PEs that is executing. Cn has no syntax for the machine a statement runs on: enable bits, PE number and
-/// the instruction stream are ambient there, and so they are here. Set only by run_strips (kernel.hpp).
+/// The strip of PEs that is executing. Cn has no syntax for the machine a statement runs on: enable bits, PE
+/// number and the instruction stream are ambient there, and so they are here. Set only by run_strips
+/// (kernel.hpp).
 struct Strip {
-  MaskLanes enabled{};                ///< PEs that take part in assignments
-  IssueCounts issued;                 ///< instructions since the last flush into `node`
-  IssueTree::Node* node = nullptr;    ///< where in the kernel's control flow the strip is
-  std::size_t next_region = 0;        ///< ordinal of the next data-dependent region in `node`
+  MaskLanes enabled{};                  ///< PEs that take part in assignments
+  IssueCounts issued;                   ///< instructions since the last flush into `node`
+  IssueTree::Node* node = nullptr;      ///< where in the kernel's control flow the strip is
+  std::size_t next_region = 0;          ///< ordinal of the next data-dependent region in `node`
   std::uint64_t* poly_words = nullptr;  ///< word w of PE p is at [w * num_pes + p]
   int num_pes = 0;
   int first_pe = 0;
@@ -21,7 +22,9 @@ struct Strip {
 
 inline thread_local Strip strip;
 
-inline void issue(InstructionClass instruction, std::uint64_t times = 1) { strip.issued[instruction] += times; }
+inline void issue(InstructionClass instruction, std::uint64_t times = 1) {
+  strip.issued[instruction] += times;
+}
 
 /// Books what was issued since the last flush; only the first strip to pass a node counts its instructions.
 inline void flush_issued() {

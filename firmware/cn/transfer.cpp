@@ -11,7 +11,9 @@ std::uint64_t load_word(const std::uint8_t* from) {
   return word;
 }
 
-void store_word(std::uint8_t* to, std::uint64_t word) { std::memcpy(to, &word, sizeof(word)); }
+void store_word(std::uint8_t* to, std::uint64_t word) {
+  std::memcpy(to, &word, sizeof(word));
+}
 
 /// Eight neighbouring PEs, all enabled: reads and writes whole rows of the strip.
 void move_strip(Direction direction, std::uint64_t* row, std::size_t row_pitch, int words,
@@ -25,7 +27,8 @@ void move_strip(Direction direction, std::uint64_t* row, std::size_t row_pitch, 
   }
 }
 
-void move_pe(Direction direction, std::uint64_t* column, std::size_t row_pitch, int words, std::uint8_t* place) {
+void move_pe(Direction direction, std::uint64_t* column, std::size_t row_pitch, int words,
+             std::uint8_t* place) {
   for (int w = 0; w < words; ++w, column += row_pitch) {
     if (direction == Direction::mono_to_poly) {
       *column = load_word(place + 8 * w);
@@ -51,7 +54,8 @@ void move_data(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
       continue;
     }
     for (int lane = 0; lane < kStripLanes; ++lane)
-      if ((bits >> lane) & 1u) move_pe(transfer.direction, row + first_pe + lane, row_pitch, words, places[lane]);
+      if ((bits >> lane) & 1u)
+        move_pe(transfer.direction, row + first_pe + lane, row_pitch, words, places[lane]);
   }
 }
 

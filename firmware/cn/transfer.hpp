@@ -15,8 +15,8 @@ struct Semaphore {
 
 enum class Direction : std::uint8_t { mono_to_poly, poly_to_mono };
 
-/// One programmed-I/O request: every enabled PE moves `poly.size_bytes` between its SRAM and its own place in mono
-/// memory; `done` is signalled when all have.
+/// One programmed-I/O request: every enabled PE moves `poly.size_bytes` between its SRAM and its own place in
+/// mono memory; `done` is signalled when all have.
 struct Transfer {
   Direction direction = Direction::mono_to_poly;
   PolySpan poly;
@@ -39,8 +39,8 @@ int first_pe_not(const Transfer& transfer, int num_pes, Allowed&& allowed) {
   return -1;
 }
 
-/// Moves the bytes of a transfer; `mono` is the storage of mono address 0. Addresses and sizes are multiples of 8
-/// (checked by Machine).
+/// Moves the bytes of a transfer; `mono` is the storage of mono address 0. Addresses and sizes are multiples
+/// of 8 (checked by Machine).
 void move_data(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
 
 }  // namespace cn

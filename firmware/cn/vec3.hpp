@@ -4,8 +4,8 @@
 
 namespace cn {
 
-/// Three components, poly or mono. GLM serves mono vectors on the host; here operands mix poly and mono, and a mono one
-/// must stay scalar.
+/// Three components, poly or mono. GLM serves mono vectors on the host; here operands mix poly and mono, and
+/// a mono one must stay scalar.
 template <class T>
 struct vec3 {
   T x;
@@ -45,7 +45,8 @@ inline auto cross(const vec3<A>& a, const vec3<B>& b) -> vec3<decltype(a.x * b.x
 }
 
 template <class T>
-inline vec3<poly<T>> select(const mask& condition, const vec3<poly<T>>& if_set, const vec3<poly<T>>& otherwise) {
+inline vec3<poly<T>> select(const mask& condition, const vec3<poly<T>>& if_set,
+                            const vec3<poly<T>>& otherwise) {
   return {select(condition, if_set.x, otherwise.x), select(condition, if_set.y, otherwise.y),
           select(condition, if_set.z, otherwise.z)};
 }

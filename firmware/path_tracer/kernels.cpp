@@ -14,7 +14,9 @@ poly<MonoAddress> place_of(MonoAddress first, const poly<std::int32_t>& index, s
   return cn::join_words(offset) + first;
 }
 
-mask kept_mask(const LaneMask& lanes) { return cn::recall(lanes); }
+mask kept_mask(const LaneMask& lanes) {
+  return cn::recall(lanes);
+}
 
 void intersect(const IntersectArguments& arguments) {
   const Point3 origin = arguments.ray.get(&RayRecord::origin);
@@ -31,7 +33,9 @@ void intersect(const IntersectArguments& arguments) {
   cn::keep(hit, *arguments.hit_something);
 }
 
-poly<double> largest(const vec3<poly<double>>& v) { return cn::max(v.x, cn::max(v.y, v.z)); }
+poly<double> largest(const vec3<poly<double>>& v) {
+  return cn::max(v.x, cn::max(v.y, v.z));
+}
 
 void scatter(const ScatterArguments& arguments) {
   const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
@@ -47,8 +51,8 @@ void scatter(const ScatterArguments& arguments) {
 
   // Russian roulette on the surface alone: the path before it need not be loaded.
   const mask safe = depth < arguments.roulette_start;
-  const poly<double> survival =
-      cn::select(safe, poly<double>(1.0), cn::min(largest(reflectance), poly<double>(arguments.max_survival)));
+  const poly<double> survival = cn::select(
+      safe, poly<double>(1.0), cn::min(largest(reflectance), poly<double>(arguments.max_survival)));
   const mask goes_on = hit & (random.value[2] < survival) & (largest(reflectance) > 0.0);
   const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
 
@@ -61,7 +65,8 @@ void scatter(const ScatterArguments& arguments) {
   arguments.scatter.set(&ScatterRecord::weight, cn::select(goes_on, reflectance * inverse_survival, none));
   const poly<std::int32_t> face = arguments.surface.get(&SurfaceRecord::face);
   arguments.scatter.set(&ScatterRecord::face, face);
-  arguments.scatter.set(&ScatterRecord::ended, cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
+  arguments.scatter.set(&ScatterRecord::ended,
+                        cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
   if (!arguments.light_by_shadow_rays) return;
 
   const Uniform4 on_light = uniform4(arguments.seed, pixel, sample, depth, Purpose::light);
@@ -79,10 +84,10 @@ void scatter(const ScatterArguments& arguments) {
 void shadow(const ShadowArguments& arguments) {
   const Point3 position = arguments.shadow.get(&ShadowRecord::position);
   const Direction3 normal = arguments.shadow.get(&ShadowRecord::normal);
-  const Point3 on_light = sample_triangle(
-      arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
-      arguments.light.get(&LightRecord::edge2), arguments.shadow.get(&ShadowRecord::light_u),
-      arguments.shadow.get(&ShadowRecord::light_v));
+  const Point3 on_light =
+      sample_triangle(arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
+                      arguments.light.get(&LightRecord::edge2), arguments.shadow.get(&ShadowRecord::light_u),
+                      arguments.shadow.get(&ShadowRecord::light_v));
   const Direction3 to_light = on_light - position;
   const poly<double> distance_squared = dot(to_light, to_light);
   const poly<double> cosine_here = dot(to_light, normal);  // both cosines are scaled by the distance

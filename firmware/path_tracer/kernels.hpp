@@ -3,8 +3,9 @@
 #include "firmware/cn/kernel.hpp"
 #include "firmware/path_tracer/program.hpp"
 
-/// The poly programs of the path tracer: their arguments and the table of entry points. Poly pointers name SRAM, plain
-/// pointers mono memory that the control unit reads, `LaneMask*` the conditions a kernel leaves to the control unit.
+/// The poly programs of the path tracer: their arguments and the table of entry points. Poly pointers name
+/// SRAM, plain pointers mono memory that the control unit reads, `LaneMask*` the conditions a kernel leaves
+/// to the control unit.
 namespace path_tracer {
 
 using cn::LaneMask;
@@ -75,9 +76,9 @@ struct ReplaceArguments {
   const LaneMask* finished = nullptr;
   const CameraRecord* camera = nullptr;
   std::uint64_t seed = 0;
-  std::int32_t next_pixel = 0;   ///< of the camera ray with number 0
+  std::int32_t next_pixel = 0;  ///< of the camera ray with number 0
   std::int32_t next_sample = 0;
-  std::int32_t remaining = 0;    ///< camera rays there still are, at most the number of PEs
+  std::int32_t remaining = 0;  ///< camera rays there still are, at most the number of PEs
   PolyPointer<PathRecord> next_path;
   PolyPointer<RayRecord> ray;
   LaneMask* live = nullptr;
@@ -107,8 +108,8 @@ struct ListArguments {
 struct FoldArguments {
   PolyPointer<FinishedRecord> entry;
   PolyPointer<VertexRecord> vertices;
-  PolyPointer<FoldRecord> earlier;     ///< read in the first step by paths that were folded before
-  PolyPointer<FoldRecord> sum;         ///< carried from step to step
+  PolyPointer<FoldRecord> earlier;  ///< read in the first step by paths that were folded before
+  PolyPointer<FoldRecord> sum;      ///< carried from step to step
   int first_vertex = 0;
   PolyPointer<RadianceRecord> radiance;  ///< written in every step; the last one counts
   PolyPointer<FoldRecord> flushed;       ///< the same, for paths that go on

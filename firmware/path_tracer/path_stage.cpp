@@ -5,15 +5,19 @@
 namespace path_tracer {
 
 CameraRays::CameraRays(const Work& work, int pixels)
-    : total_(std::uint64_t(work.samples) * std::uint64_t(pixels)), first_sample_(work.first_sample), pixels_(pixels) {}
+    : total_(std::uint64_t(work.samples) * std::uint64_t(pixels)),
+      first_sample_(work.first_sample),
+      pixels_(pixels) {}
 
 PathStage::PathStage(const StageContext& context, const Work& work)
     : Stage(context),
-      camera_rays_(work, [&] {
-        const CameraRecord& camera = *context.machine.read_mono(context.layout.camera);
-        return camera.width * camera.height;
-      }()),
-      number_{context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes} {}
+      camera_rays_(work,
+                   [&] {
+                     const CameraRecord& camera = *context.machine.read_mono(context.layout.camera);
+                     return camera.width * camera.height;
+                   }()),
+      number_{
+          context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes} {}
 
 PathStage::Loads PathStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
@@ -85,8 +89,8 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
   const Saves to = saves(step);
-  const auto started =
-      static_cast<std::int32_t>(std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
+  const auto started = static_cast<std::int32_t>(
+      std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
   LaneMask live;
   ReplaceArguments arguments;
   arguments.path = from.path;
@@ -121,9 +125,10 @@ void PathStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   const Bins::Block& bin = bin_block(block);
   if (appended_.any()) {
-    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.vertex_place), from.vertex.span(), appended_);
-    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place), from.finished.span(),
-                            finished_);
+    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.vertex_place), from.vertex.span(),
+                            appended_);
+    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place),
+                            from.finished.span(), finished_);
   }
   save_block(step, block, context_.layout.path_bin, from.path, bin.live);
   save_block(step, block, context_.layout.ray_bin, from.ray, bin.live);

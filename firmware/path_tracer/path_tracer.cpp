@@ -5,7 +5,8 @@
 namespace path_tracer {
 namespace {
 
-/// Where unoptimised Cn keeps its locals; the stack lies at the low end of poly SRAM (SDK Reference Manual 3.1, p. 163).
+/// Where unoptimised Cn keeps its locals; the stack lies at the low end of poly SRAM (SDK Reference
+/// Manual 3.1, p. 163).
 constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config) {
@@ -33,7 +34,8 @@ cn::Machine& with_host_semaphores(cn::Machine& machine) {
   const cn::Semaphore ready = machine.allocate_semaphore("results ready");
   const cn::Semaphore free = machine.allocate_semaphore("results free");
   if (ready.index != HostSemaphores::kResultsReady.index || free.index != HostSemaphores::kResultsFree.index)
-    throw cn::MachineFault("the host's semaphores 0 and 1 are taken: a machine runs one program after a reset");
+    throw cn::MachineFault(
+        "the host's semaphores 0 and 1 are taken: a machine runs one program after a reset");
   machine.poly_memory().allocate("stack", kStackBytes);
   return machine;
 }
@@ -52,16 +54,16 @@ Bins make_bins(cn::Machine& machine, int blocks) {
   return bins;
 }
 
-std::unique_ptr<TransferRing> untimed_ring(cn::Machine& machine, const ProgramConfig& config, const char* name,
-                                           int bytes) {
+std::unique_ptr<TransferRing> untimed_ring(cn::Machine& machine, const ProgramConfig& config,
+                                           const char* name, int bytes) {
   if (config.program == Program::full) return nullptr;
   return std::make_unique<TransferRing>(machine, name, 1, bytes);
 }
 
 }  // namespace
 
-PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config, const Layout& layout,
-                       const Work& work)
+PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
+                       const Layout& layout, const Work& work)
     : machine_(with_host_semaphores(machine)),
       config_(valid(config)),
       layout_(layout),
@@ -114,17 +116,17 @@ void PathTracer::plan_pass() {
   live_blocks_.clear();
 }
 
-/// A step's records come from earlier steps on the same block of the bins. Few live blocks bring the two so close that
-/// the earlier one has not run yet. Radiance steps are only planned when what they read is there.
+/// A step's records come from earlier steps on the same block of the bins. Few live blocks bring the two so
+/// close that the earlier one has not run yet. Radiance steps are only planned when what they read is there.
 bool PathTracer::can_load(std::size_t ahead) const {
   const auto is_radiance = [this](const Step& step) {
     return step.stage == &radiance_stage_.list() || step.stage == &radiance_stage_.fold();
   };
   const Step& wanted = steps_[ahead];
   if (is_radiance(wanted)) return true;
-  return std::none_of(steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(ahead), [&](const Step& earlier) {
-    return !is_radiance(earlier) && earlier.block == wanted.block;
-  });
+  return std::none_of(
+      steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(ahead),
+      [&](const Step& earlier) { return !is_radiance(earlier) && earlier.block == wanted.block; });
 }
 
 void PathTracer::issue_loads() {
@@ -163,12 +165,13 @@ void PathTracer::after_path_step(int block) {
   }
   const bool last = --path_steps_left_ == 0;
   if (radiance_is_timed()) {
-    // A block of the list can be worked on as soon as it is full, the last one when no path step can add to it.
+    // A block of the list can be worked on as soon as it is full, the last one when no path step can add to
+    // it.
     const int finished = path_stage_.finished_count();
     while (finished >= (listed_blocks_ + 1) * machine_.num_pes() ||
            (last && finished > listed_blocks_ * machine_.num_pes())) {
-      radiance_stage_.begin_block(listed_blocks_,
-                                  std::min(machine_.num_pes(), finished - listed_blocks_ * machine_.num_pes()));
+      radiance_stage_.begin_block(
+          listed_blocks_, std::min(machine_.num_pes(), finished - listed_blocks_ * machine_.num_pes()));
       plan(radiance_stage_.list(), listed_blocks_++);
       ++list_steps_left_;
     }

@@ -8,18 +8,20 @@
 
 namespace path_tracer {
 
-/// Semaphores that the firmware shares with the host. Both sides know them by number, as the host's driver does.
+/// Semaphores that the firmware shares with the host. Both sides know them by number, as the host's driver
+/// does.
 struct HostSemaphores {
-  static constexpr cn::Semaphore kResultsReady{0};  ///< signalled by the firmware, one half of the results is full
-  static constexpr cn::Semaphore kResultsFree{1};   ///< signalled by the host, it has read that half
+  static constexpr cn::Semaphore kResultsReady{
+      0};  ///< signalled by the firmware, one half of the results is full
+  static constexpr cn::Semaphore kResultsFree{1};  ///< signalled by the host, it has read that half
 };
 
 /// The firmware's main program: binned, n-buffered path tracing (paper, section 3).
 ///
 /// A step is one stage on one block. Steps run one after the other: all blocks through the ray bin, then the
-/// intersection bin, the shadow rays and the path bin, then the radiance of the paths that finished, and again until
-/// no camera ray and no path is left. While step m is processed, the loads of steps m+1..m+n and the saves of steps
-/// m-1..m-n are under way, across the borders between bins.
+/// intersection bin, the shadow rays and the path bin, then the radiance of the paths that finished, and
+/// again until no camera ray and no path is left. While step m is processed, the loads of steps m+1..m+n and
+/// the saves of steps m-1..m-n are under way, across the borders between bins.
 class PathTracer {
  public:
   /// `machine` has the scene image of `layout` in mono memory. Throws ProgramError, cn::PolyMemoryOverflow.
@@ -72,13 +74,13 @@ class PathTracer {
   std::size_t loads_issued_ = 0;  ///< of the steps at the front
   std::uint64_t next_step_ = 0;
 
-  std::vector<int> live_blocks_;       ///< of the pass that is being planned
-  int path_steps_left_ = 0;            ///< of the pass that runs
-  int listed_blocks_ = 0;              ///< list steps planned in this pass
+  std::vector<int> live_blocks_;  ///< of the pass that is being planned
+  int path_steps_left_ = 0;       ///< of the pass that runs
+  int listed_blocks_ = 0;         ///< list steps planned in this pass
   int list_steps_left_ = 0;
 
   int results_half_ = 0;
-  int results_records_ = 0;            ///< finished but not yet announced
+  int results_records_ = 0;  ///< finished but not yet announced
   std::uint64_t last_result_step_ = 0;
   int announcements_ = 0;
 };

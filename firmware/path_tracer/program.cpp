@@ -26,7 +26,8 @@ void require(bool ok, const std::string& what, const std::string& found, const s
 }  // namespace
 
 void validate(const ProgramConfig& config) {
-  require(config.n >= 0 && config.n <= kMaxBuffers, "n", std::to_string(config.n), "0 to " + std::to_string(kMaxBuffers));
+  require(config.n >= 0 && config.n <= kMaxBuffers, "n", std::to_string(config.n),
+          "0 to " + std::to_string(kMaxBuffers));
   require(config.bin_blocks >= 1 && config.bin_blocks <= kMaxBinBlocks, "bin length",
           std::to_string(config.bin_blocks) + " blocks", "1 to " + std::to_string(kMaxBinBlocks));
   // Paper, section 3.3: "the bins must be at least n * (number of PEs) in length".
@@ -35,8 +36,10 @@ void validate(const ProgramConfig& config) {
   require(config.slot_vertices >= kVerticesPerLoad && config.slot_vertices <= kMaxSlotVertices &&
               config.slot_vertices % kVerticesPerLoad == 0,
           "vertices a path slot", std::to_string(config.slot_vertices),
-          "a positive multiple of " + std::to_string(kVerticesPerLoad) + " up to " + std::to_string(kMaxSlotVertices));
-  require(config.roulette_start >= 0, "roulette start", std::to_string(config.roulette_start), "0 or more segments");
+          "a positive multiple of " + std::to_string(kVerticesPerLoad) + " up to " +
+              std::to_string(kMaxSlotVertices));
+  require(config.roulette_start >= 0, "roulette start", std::to_string(config.roulette_start),
+          "0 or more segments");
   require(config.max_survival > 0 && config.max_survival < 1, "largest survival probability",
           std::to_string(config.max_survival), "above 0 and below 1");
 }

@@ -31,10 +31,10 @@ struct ProgramConfig {
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
-  int bin_blocks = 16;          ///< length of each bin in blocks of one SIMD width
-  int slot_vertices = 16;       ///< vertices a path slot holds; a multiple of kVerticesPerLoad
-  int roulette_start = 0;       ///< segments a path lives without roulette
-  double max_survival = 0.95;   ///< so that paths between white surfaces end
+  int bin_blocks = 16;         ///< length of each bin in blocks of one SIMD width
+  int slot_vertices = 16;      ///< vertices a path slot holds; a multiple of kVerticesPerLoad
+  int roulette_start = 0;      ///< segments a path lives without roulette
+  double max_survival = 0.95;  ///< so that paths between white surfaces end
   std::uint64_t seed = 1;
 
   int load_buffers() const { return buffer_loads ? n + 1 : 1; }

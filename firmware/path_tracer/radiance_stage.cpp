@@ -21,7 +21,8 @@ RadianceStage::RadianceStage(const StageContext& context)
 void RadianceStage::ListStage::load(std::uint64_t step, int block) {
   context_.saves.wait_until(context_.bins.last_path_step);
   const PolyPointer<FinishedRecord> entry(context_.loads.buffer(step));
-  load_block(step, block, entry, context_.layout.finished, LaneMask::first(blocks_[std::size_t(block)].entries));
+  load_block(step, block, entry, context_.layout.finished,
+             LaneMask::first(blocks_[std::size_t(block)].entries));
 }
 
 void RadianceStage::ListStage::process(std::uint64_t step, int block) {
@@ -55,7 +56,8 @@ RadianceStage::FoldStage::FoldStage(const StageContext& context, std::vector<Lis
 
 RadianceStage::FoldStage::Loads RadianceStage::FoldStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
-  return {cutter.take<FinishedRecord>(), cutter.take<FoldRecord>(), cutter.take<VertexRecord>(kVerticesPerLoad)};
+  return {cutter.take<FinishedRecord>(), cutter.take<FoldRecord>(),
+          cutter.take<VertexRecord>(kVerticesPerLoad)};
 }
 
 RadianceStage::FoldStage::Saves RadianceStage::FoldStage::saves(std::uint64_t step) const {
@@ -72,7 +74,8 @@ void RadianceStage::FoldStage::load(std::uint64_t step, int block) {
   const cn::MonoPlaces list_places = block_of(context_.layout.finished, list_index(block));
   context_.loads.copy_m2p(step, block, to.entry.span(), list_places, entries);
   if (load == 0)
-    context_.loads.copy_m2p(step, block, to.earlier.span(), context_.machine.places_in(list.fold_place), list.folded);
+    context_.loads.copy_m2p(step, block, to.earlier.span(), context_.machine.places_in(list.fold_place),
+                            list.folded);
   constexpr int kBytes = kVerticesPerLoad * static_cast<int>(sizeof(VertexRecord));
   context_.loads.copy_m2p(step, block, {to.vertices.span().offset_bytes, kBytes},
                           context_.machine.places_in(list.vertex_place, std::uint64_t(load) * kBytes),
@@ -100,7 +103,8 @@ void RadianceStage::FoldStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   context_.saves.copy_p2m(step, block, block_of(results_, list_index(block)), from.radiance.span(),
                           LaneMask::first(list.entries));
-  context_.saves.copy_p2m(step, block, context_.machine.places_in(list.fold_place), from.flushed.span(), list.flushed);
+  context_.saves.copy_p2m(step, block, context_.machine.places_in(list.fold_place), from.flushed.span(),
+                          list.flushed);
 }
 
 }  // namespace path_tracer

@@ -14,10 +14,11 @@ struct Uniform4 {
   cn::poly<double> value[4];
 };
 
-/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw, SC 2011): random numbers as a function of what they are for. The same
-/// pixel, sample, depth and purpose give the same numbers wherever and whenever a path is traced.
-inline Uniform4 uniform4(std::uint64_t seed, const cn::poly<std::int32_t>& pixel, const cn::poly<std::int32_t>& sample,
-                         const cn::poly<std::int32_t>& depth, Purpose purpose) {
+/// Philox4x32-10 (Salmon, Moraes, Dror, Shaw, SC 2011): random numbers as a function of what they are for.
+/// The same pixel, sample, depth and purpose give the same numbers wherever and whenever a path is traced.
+inline Uniform4 uniform4(std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
+                         const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
+                         Purpose purpose) {
   using Word = cn::poly<std::uint32_t>;
   constexpr std::uint32_t kMultiplier0 = 0xD2511F53u;
   constexpr std::uint32_t kMultiplier1 = 0xCD9E8D57u;

@@ -4,7 +4,8 @@
 
 #include "firmware/cn/vec3.hpp"
 
-/// What lies in mono memory, record by record. Poly buffers hold the same layouts, so a transfer is a plain copy.
+/// What lies in mono memory, record by record. Poly buffers hold the same layouts, so a transfer is a plain
+/// copy.
 namespace path_tracer {
 
 using cn::vec3;
@@ -21,8 +22,8 @@ struct CameraRecord {
   std::int32_t height = 0;
 };
 
-/// For intersection (Moeller and Trumbore 1997). Triangles that touch in one plane share a face: a ray that leaves a
-/// face ignores it, so no distance threshold is needed to keep a surface from shadowing itself.
+/// For intersection (Moeller and Trumbore 1997). Triangles that touch in one plane share a face: a ray that
+/// leaves a face ignores it, so no distance threshold is needed to keep a surface from shadowing itself.
 struct TriangleRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};

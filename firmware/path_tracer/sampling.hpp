@@ -22,8 +22,8 @@ inline Direction3 normalize(const Direction3& v, const Direction3& fallback) {
   return cn::select(usable, v * scale, fallback);
 }
 
-/// Directions with density cos / pi around a unit normal: the normal plus a point of the unit sphere, which needs no
-/// tangents.
+/// Directions with density cos / pi around a unit normal: the normal plus a point of the unit sphere, which
+/// needs no tangents.
 inline Direction3 sample_cosine(const Direction3& normal, const poly<double>& u, const poly<double>& v) {
   const poly<double> z = 1.0 - 2.0 * u;
   const poly<double> radius = cn::sqrt(1.0 - z * z);
@@ -57,8 +57,8 @@ struct CameraRay {
 };
 
 /// Through a uniform point of the pixel: the film's filter is a box one pixel wide.
-inline CameraRay sample_camera(const CameraRecord& camera, std::uint64_t seed, const poly<std::int32_t>& pixel,
-                               const poly<std::int32_t>& sample) {
+inline CameraRay sample_camera(const CameraRecord& camera, std::uint64_t seed,
+                               const poly<std::int32_t>& pixel, const poly<std::int32_t>& sample) {
   const Uniform4 random = uniform4(seed, pixel, sample, 0, Purpose::camera);
   // PEs cannot divide integers; half a pixel off the quotient's integers, the truncated product is exact.
   const poly<double> row_position = (cn::convert<double>(pixel) + 0.5) * (1.0 / camera.width);

@@ -7,11 +7,12 @@
 
 namespace path_tracer {
 
-/// What is known of the bins outside mono memory: conditions that PEs hold for each block and the addresses kept in
-/// poly memory from one bin to the next (paper, section 3.3: "a small piece of data is kept in poly memory").
+/// What is known of the bins outside mono memory: conditions that PEs hold for each block and the addresses
+/// kept in poly memory from one bin to the next (paper, section 3.3: "a small piece of data is kept in poly
+/// memory").
 struct Bins {
   struct Block {
-    LaneMask live;           ///< slots that hold a path
+    LaneMask live;  ///< slots that hold a path
     int live_count = 0;
     LaneMask hit_something;
     LaneMask wants_light;

@@ -67,7 +67,9 @@ class CameraRays {
   CameraRays(const Work& work, int pixels);
 
   std::int32_t next_pixel() const { return static_cast<std::int32_t>(next_ % std::uint64_t(pixels_)); }
-  std::int32_t next_sample() const { return first_sample_ + static_cast<std::int32_t>(next_ / std::uint64_t(pixels_)); }
+  std::int32_t next_sample() const {
+    return first_sample_ + static_cast<std::int32_t>(next_ / std::uint64_t(pixels_));
+  }
   std::uint64_t remaining() const { return total_ - next_; }
   void issue(std::uint64_t count) { next_ += count; }
   std::uint64_t issued() const { return next_; }
@@ -79,8 +81,8 @@ class CameraRays {
   int pixels_;
 };
 
-/// Path bin: appends the vertex and puts the next camera ray in the place of a path that ended. Lists the paths that
-/// wait for their radiance, packed by ascending numbers.
+/// Path bin: appends the vertex and puts the next camera ray in the place of a path that ended. Lists the
+/// paths that wait for their radiance, packed by ascending numbers.
 class PathStage : public Stage {
  public:
   PathStage(const StageContext& context, const Work& work);
@@ -130,8 +132,8 @@ class PathStage : public Stage {
   int finished_count_ = 0;
 };
 
-/// Radiance of the paths that the path stage listed, vertex by vertex (paper, section 3.1). Its blocks are blocks of the
-/// list; each takes one list step and then as many fold steps as its longest path needs.
+/// Radiance of the paths that the path stage listed, vertex by vertex (paper, section 3.1). Its blocks are
+/// blocks of the list; each takes one list step and then as many fold steps as its longest path needs.
 class RadianceStage {
  public:
   explicit RadianceStage(const StageContext& context);
@@ -152,7 +154,8 @@ class RadianceStage {
 
   class ListStage : public Stage {
    public:
-    ListStage(const StageContext& context, std::vector<ListBlock>& blocks) : Stage(context), blocks_(blocks) {}
+    ListStage(const StageContext& context, std::vector<ListBlock>& blocks)
+        : Stage(context), blocks_(blocks) {}
     void load(std::uint64_t step, int block) override;
     void process(std::uint64_t step, int block) override;
     void save(std::uint64_t, int) override {}

@@ -14,7 +14,8 @@ TransferRing::TransferRing(cn::Machine& machine, const std::string& name, int bu
     : machine_(machine) {
   for (int i = 0; i < buffers; ++i) {
     const std::string label = name + " " + std::to_string(i);
-    entries_.push_back({machine.poly_memory().allocate(label, bytes_per_buffer), machine.allocate_semaphore(label)});
+    entries_.push_back(
+        {machine.poly_memory().allocate(label, bytes_per_buffer), machine.allocate_semaphore(label)});
   }
 }
 
@@ -27,13 +28,13 @@ TransferRing::Entry& TransferRing::claim(std::uint64_t step, int block) {
   return claimed;
 }
 
-void TransferRing::copy_m2p(std::uint64_t step, int block, cn::PolySpan destination, const cn::MonoPlaces& source,
-                            const cn::LaneMask& enabled) {
+void TransferRing::copy_m2p(std::uint64_t step, int block, cn::PolySpan destination,
+                            const cn::MonoPlaces& source, const cn::LaneMask& enabled) {
   machine_.async_copy_m2p(claim(step, block).done, destination, source, enabled);
 }
 
-void TransferRing::copy_p2m(std::uint64_t step, int block, const cn::MonoPlaces& destination, cn::PolySpan source,
-                            const cn::LaneMask& enabled) {
+void TransferRing::copy_p2m(std::uint64_t step, int block, const cn::MonoPlaces& destination,
+                            cn::PolySpan source, const cn::LaneMask& enabled) {
   machine_.async_copy_p2m(claim(step, block).done, destination, source, enabled);
 }
 
@@ -42,7 +43,9 @@ void TransferRing::wait(Entry& entry) {
   for (; entry.pending > 0; --entry.pending) machine_.sem_wait(entry.done);
 }
 
-void TransferRing::wait(std::uint64_t step) { wait(entry(step)); }
+void TransferRing::wait(std::uint64_t step) {
+  wait(entry(step));
+}
 
 void TransferRing::wait_block(int block) {
   machine_.issue_mono(kEntryInstructions * entries_.size());

@@ -8,9 +8,9 @@
 
 namespace path_tracer {
 
-/// n-buffering in one direction (paper, section 3.3): as many poly buffers as steps may be under way at once, taken in
-/// turn by step number, each with a semaphore that counts its finished transfers. Every bin uses the same ring, so that
-/// the last steps of a bin overlap with the first of the next.
+/// n-buffering in one direction (paper, section 3.3): as many poly buffers as steps may be under way at once,
+/// taken in turn by step number, each with a semaphore that counts its finished transfers. Every bin uses the
+/// same ring, so that the last steps of a bin overlap with the first of the next.
 class TransferRing {
  public:
   TransferRing(cn::Machine& machine, const std::string& name, int buffers, int bytes_per_buffer);

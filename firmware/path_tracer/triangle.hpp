@@ -12,8 +12,8 @@ using cn::poly;
 using Direction3 = vec3<poly<double>>;
 using Point3 = vec3<poly<double>>;
 
-/// A line against a triangle, scaled by |determinant| so that no division is needed to test it (Moeller and Trumbore
-/// 1997, with numerators compared instead of quotients).
+/// A line against a triangle, scaled by |determinant| so that no division is needed to test it (Moeller and
+/// Trumbore 1997, with numerators compared instead of quotients).
 struct Crossing {
   poly<double> determinant;  ///< positive when the line meets the front
   poly<double> size;         ///< |determinant|
@@ -21,7 +21,8 @@ struct Crossing {
   mask inside;               ///< within the triangle and ahead of the origin
 };
 
-inline Crossing cross_triangle(const Point3& origin, const Direction3& direction, const TriangleRecord& triangle) {
+inline Crossing cross_triangle(const Point3& origin, const Direction3& direction,
+                               const TriangleRecord& triangle) {
   // The control unit fetches ten mono operands and turns the loop.
   cn::issue(cn::InstructionClass::mono, 13);
   const Direction3 p = cross(direction, triangle.edge2);
@@ -43,8 +44,9 @@ struct Nearest {
 };
 
 /// Tests every triangle; a ray ignores the face that it leaves.
-inline Nearest nearest_triangle(const Point3& origin, const Direction3& direction, const poly<std::int32_t>& left_face,
-                                const TriangleRecord* triangles, int triangle_count) {
+inline Nearest nearest_triangle(const Point3& origin, const Direction3& direction,
+                                const poly<std::int32_t>& left_face, const TriangleRecord* triangles,
+                                int triangle_count) {
   Nearest nearest;
   for (int i = 0; i < triangle_count; ++i) {
     const Crossing crossing = cross_triangle(origin, direction, triangles[i]);
@@ -60,12 +62,14 @@ inline Nearest nearest_triangle(const Point3& origin, const Direction3& directio
 
 /// Whether something lies between the origin and origin + direction, other than the two faces at the ends.
 inline mask is_blocked(const Point3& origin, const Direction3& direction, const poly<std::int32_t>& left_face,
-                       const poly<std::int32_t>& reached_face, const TriangleRecord* triangles, int triangle_count) {
+                       const poly<std::int32_t>& reached_face, const TriangleRecord* triangles,
+                       int triangle_count) {
   poly<std::int32_t> blocked = 0;
   for (int i = 0; i < triangle_count; ++i) {
     const Crossing crossing = cross_triangle(origin, direction, triangles[i]);
     const mask between = crossing.inside & (crossing.distance < crossing.size);
-    cn::poly_if(between & (left_face != triangles[i].face) & (reached_face != triangles[i].face), [&] { blocked = 1; });
+    cn::poly_if(between & (left_face != triangles[i].face) & (reached_face != triangles[i].face),
+                [&] { blocked = 1; });
   }
   return blocked != 0;
 }

@@ -10,7 +10,8 @@ namespace testbench {
 void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {
   chip_ = default_chip;
   command.add_option("--chip", chip_, "Preset or .toml file (see `csx600 params`)")->capture_default_str();
-  command.add_option("--set", settings_, "One parameter, key=value; may be repeated")->allow_extra_args(false);
+  command.add_option("--set", settings_, "One parameter, key=value; may be repeated")
+      ->allow_extra_args(false);
 }
 
 model::ChipConfig ChipOptions::chip() const {
@@ -39,7 +40,9 @@ path_tracer::Level LevelOption::level() const {
   using path_tracer::Level;
   const Level widest = widest_level();
   if (level_ == "auto") return widest;
-  const Level wanted = level_ == "v4" ? Level::x86_64_v4 : level_ == "v3" ? Level::x86_64_v3 : Level::x86_64_v2;
+  const Level wanted = level_ == "v4"   ? Level::x86_64_v4
+                       : level_ == "v3" ? Level::x86_64_v3
+                                        : Level::x86_64_v2;
   if (wanted > widest)
     throw InputError("--level: found " + level_ + ", this machine executes levels up to v" +
                      std::to_string(2 + static_cast<int>(widest)));

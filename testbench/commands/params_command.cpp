@@ -26,7 +26,8 @@ struct ParamsCommand {
 }  // namespace
 
 void add_params_command(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("params", "Print every chip parameter: value, unit, confidence, meaning");
+  CLI::App& command =
+      *app.add_subcommand("params", "Print every chip parameter: value, unit, confidence, meaning");
   const auto state = std::make_shared<ParamsCommand>();
   state->chip.add_to(command, "csx600");
   command.add_flag("--presets", state->presets, "Print the presets and what they change instead");

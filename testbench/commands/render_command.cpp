@@ -52,7 +52,8 @@ FilmSize parse_size(const std::string& text) {
   const bool two_numbers = std::sscanf(text.c_str(), "%lldx%lld%c", &width, &height, &end) == 2;
   const auto allowed = [](long long side) { return side >= 1 && side <= kMaxFilmSide; };
   if (!two_numbers || !allowed(width) || !allowed(height))
-    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " + std::to_string(kMaxFilmSide));
+    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " +
+                     std::to_string(kMaxFilmSide));
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
@@ -68,10 +69,12 @@ void parse_cycles(const std::string& text, WaveOptions& waves) {
     } catch (const std::exception&) {
       used = 0;
     }
-    if (used != part.size() || part[0] == '-') throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
+    if (used != part.size() || part[0] == '-')
+      throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
     return value;
   };
-  if (colon == std::string::npos) throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
+  if (colon == std::string::npos)
+    throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
   waves.first_cycle = number(text.substr(0, colon), 0);
   waves.last_cycle = number(text.substr(colon + 1), waves.last_cycle);
 }
@@ -82,7 +85,8 @@ void RenderCommand::require_writable_outputs() const {
       {"--exr", exr}, {"--png", png}, {"--stats", statistics}, {"--vcd", vcd}};
   for (const auto& [option, path] : outputs) {
     if (path.empty()) continue;
-    const auto [other, is_first] = option_of.emplace(std::filesystem::absolute(path).lexically_normal(), option);
+    const auto [other, is_first] =
+        option_of.emplace(std::filesystem::absolute(path).lexically_normal(), option);
     if (!is_first)
       throw InputError(std::string(option) + ": found '" + path + "', which " + other->second +
                        " writes too; allowed is a file of its own");
@@ -125,7 +129,8 @@ Scene RenderCommand::load() const {
 void RenderCommand::write_outputs(const RenderRequest& request, const RenderResult& result) const {
   if (!exr.empty()) write_exr(exr, result.film, render_provenance(request, result));
   if (!png.empty()) write_png(png, result.film);
-  if (!statistics.empty()) write_bytes_atomically(statistics, render_statistics(request, result).dump(2) + "\n");
+  if (!statistics.empty())
+    write_bytes_atomically(statistics, render_statistics(request, result).dump(2) + "\n");
 }
 
 void RenderCommand::run() {
@@ -150,7 +155,8 @@ void RenderCommand::run() {
   std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
               loaded.film.width, loaded.film.height, request.options.work.samples,
               render_statistics(request, result)["firmware"]["program"].get<std::string>().c_str(),
-              request.options.program.n, buffer.c_str(), native ? "native" : request.options.chip.preset.c_str());
+              request.options.program.n, buffer.c_str(),
+              native ? "native" : request.options.chip.preset.c_str());
   std::fputs(render_table(request, result).c_str(), stdout);
   if (exr.empty() && png.empty()) std::puts("  no image written: name one with --exr or --png");
 }
@@ -166,8 +172,11 @@ void add_firmware_options(CLI::App& command, RenderCommand& state) {
       ->capture_default_str();
   command.add_option("--bin-blocks", program.bin_blocks, "Length of each bin in blocks of one SIMD width")
       ->capture_default_str();
-  command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")->capture_default_str();
-  command.add_option("--roulette-start", program.roulette_start, "Segments that a path lives without Russian roulette")
+  command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")
+      ->capture_default_str();
+  command
+      .add_option("--roulette-start", program.roulette_start,
+                  "Segments that a path lives without Russian roulette")
       ->capture_default_str();
   command.add_option("--seed", program.seed, "Seed of the random numbers")
       ->check(CLI::NonNegativeNumber)

@@ -80,7 +80,8 @@ void print_table(int table, const char* title, const std::vector<Cell>& cells) {
   std::printf("  %-8s", "");
   for (const Program program : kPrograms) std::printf("  %-26s", program_name(program));
   std::printf("\n  %-8s", "");
-  for (std::size_t i = 0; i < std::size(kPrograms); ++i) std::printf("  %7s %7s %9s ", "model", "paper", "error");
+  for (std::size_t i = 0; i < std::size(kPrograms); ++i)
+    std::printf("  %7s %7s %9s ", "model", "paper", "error");
   std::printf("\n");
   for (std::size_t row = 0; row < paper_rows().size(); ++row) {
     if (paper_rows()[row].table != table) continue;
@@ -104,10 +105,11 @@ void print_summary(const std::vector<Cell>& cells) {
     worst = std::max(worst, std::abs(cell.error_percent()));
     sum += std::abs(cell.error_percent());
   }
-  std::printf("Radiance at n = 1: %.2f %% of the full computation (paper: %.2f %%)\n", 100 * (1 - direct / full),
-              100 * (1 - 13.17 / 13.28));
-  std::printf("Error: %.1f %% mean, %.1f %% worst of %zu cells (* the cell that preset paper was fitted to)\n",
-              sum / double(cells.size()), worst, cells.size());
+  std::printf("Radiance at n = 1: %.2f %% of the full computation (paper: %.2f %%)\n",
+              100 * (1 - direct / full), 100 * (1 - 13.17 / 13.28));
+  std::printf(
+      "Error: %.1f %% mean, %.1f %% worst of %zu cells (* the cell that preset paper was fitted to)\n",
+      sum / double(cells.size()), worst, cells.size());
 }
 
 Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
@@ -150,13 +152,18 @@ void ReproduceCommand::run() const {
 }  // namespace
 
 void add_reproduce_command(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("reproduce", "Run the paper's Tables 1 and 2 and print both side by side");
+  CLI::App& command =
+      *app.add_subcommand("reproduce", "Run the paper's Tables 1 and 2 and print both side by side");
   const auto state = std::make_shared<ReproduceCommand>();
   command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
-  command.add_option("--samples", state->samples, "Paths a pixel")->check(CLI::Range(1, 1 << 20))->capture_default_str();
-  command.add_option("--jobs", state->jobs, "Runs at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  command.add_option("--samples", state->samples, "Paths a pixel")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  command.add_option("--jobs", state->jobs, "Runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   command.add_option("--json", state->json, "Also write the cells to this file");
   command.callback([state] { state->run(); });
 }

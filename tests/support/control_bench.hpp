@@ -19,7 +19,8 @@ struct FakeArguments {
   IssueCounts issued;
 };
 
-inline void run_fake(const FakeArguments& arguments, cn::PolyMemory&, const cn::LaneMask& enabled, cn::IssueTree& issued) {
+inline void run_fake(const FakeArguments& arguments, cn::PolyMemory&, const cn::LaneMask& enabled,
+                     cn::IssueTree& issued) {
   issued.clear();
   issued.root().counts = arguments.issued;
   issued.root().enabled_lanes = std::uint64_t(enabled.count());
@@ -63,7 +64,8 @@ class ControlBench : public SystemCFixture {
 
   /// 8 x 32 bytes without gaps: 100 setup + 8 x (10 + 4) = 212 cycles in the engine, either way.
   static constexpr model::Cycles kRequestCycles = 212;
-  static void load(cn::Machine& machine, cn::Semaphore done, const cn::LaneMask& enabled = cn::LaneMask::first(8)) {
+  static void load(cn::Machine& machine, cn::Semaphore done,
+                   const cn::LaneMask& enabled = cn::LaneMask::first(8)) {
     machine.async_copy_m2p(done, {0, 32}, cn::MonoPlaces::array(0, 32), enabled);
   }
   static void save(cn::Machine& machine, cn::Semaphore done) {

@@ -22,21 +22,27 @@ testbench::RenderOptions render_options(path_tracer::Program program, int sample
   return options;
 }
 
-std::vector<RadianceRecord> native_paths(const testbench::Scene& scene, const testbench::RenderOptions& options) {
-  const testbench::MonoImage image = testbench::make_mono_image(scene, options.chip.chip.pes, options.program);
-  testbench::NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, image.layout.total_bytes);
+std::vector<RadianceRecord> native_paths(const testbench::Scene& scene,
+                                         const testbench::RenderOptions& options) {
+  const testbench::MonoImage image =
+      testbench::make_mono_image(scene, options.chip.chip.pes, options.program);
+  testbench::NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes,
+                                   image.layout.total_bytes);
   std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
   std::vector<RadianceRecord> paths;
   int half = 0;
   machine.on_signal(HostSemaphores::kResultsReady, [&] {
-    const auto* header = reinterpret_cast<const ResultsHeader*>(machine.mono() + image.layout.results_header[half].address);
-    const auto* records = reinterpret_cast<const RadianceRecord*>(machine.mono() + image.layout.results[half].address);
+    const auto* header =
+        reinterpret_cast<const ResultsHeader*>(machine.mono() + image.layout.results_header[half].address);
+    const auto* records =
+        reinterpret_cast<const RadianceRecord*>(machine.mono() + image.layout.results[half].address);
     for (int i = 0; i < header->records; ++i)
       if (records[i].pixel >= 0) paths.push_back(records[i]);
     half = 1 - half;
     machine.sem_signal(HostSemaphores::kResultsFree);
   });
-  path_tracer::PathTracer tracer(machine, path_tracer::kernels(options.level), options.program, image.layout, options.work);
+  path_tracer::PathTracer tracer(machine, path_tracer::kernels(options.level), options.program, image.layout,
+                                 options.work);
   tracer.run({});
   return paths;
 }

@@ -11,6 +11,7 @@ namespace test_support {
 testbench::RenderOptions render_options(path_tracer::Program program, int samples);
 
 /// The results as the firmware leaves them in mono memory, one a path, without a film in between.
-std::vector<path_tracer::RadianceRecord> native_paths(const testbench::Scene& scene, const testbench::RenderOptions& options);
+std::vector<path_tracer::RadianceRecord> native_paths(const testbench::Scene& scene,
+                                                      const testbench::RenderOptions& options);
 
 }  // namespace test_support

@@ -17,7 +17,8 @@ using testbench::Triangle;
 
 constexpr double kPi = 3.14159265358979323846;
 
-Camera looking(const glm::dvec3& from, const glm::dvec3& towards, const glm::dvec3& up_hint, double field_of_view_degrees) {
+Camera looking(const glm::dvec3& from, const glm::dvec3& towards, const glm::dvec3& up_hint,
+               double field_of_view_degrees) {
   Camera camera;
   camera.position = from;
   camera.direction = glm::normalize(towards - from);
@@ -26,12 +27,14 @@ Camera looking(const glm::dvec3& from, const glm::dvec3& towards, const glm::dve
   return camera;
 }
 
-std::int32_t add_material(Scene& scene, const std::string& name, const glm::dvec3& reflectance, const glm::dvec3& emission) {
+std::int32_t add_material(Scene& scene, const std::string& name, const glm::dvec3& reflectance,
+                          const glm::dvec3& emission) {
   scene.materials.push_back({name, reflectance, emission});
   return static_cast<std::int32_t>(scene.materials.size()) - 1;
 }
 
-void add_triangle(Scene& scene, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, std::int32_t material) {
+void add_triangle(Scene& scene, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
+                  std::int32_t material) {
   scene.triangles.push_back({{a, b, c}, material});
 }
 
@@ -55,7 +58,11 @@ void add_plane_and_light(Scene& scene, const PlaneAndLight& values) {
   constexpr double kSide = PlaneAndLight::kLightHalfSide;
   constexpr double kHeight = PlaneAndLight::kLightHeight;
   add_square(scene, {{{-kFar, 0, -kFar}, {-kFar, 0, kFar}, {kFar, 0, kFar}, {kFar, 0, -kFar}}}, plane);
-  add_square(scene, {{{-kSide, kHeight, -kSide}, {kSide, kHeight, -kSide}, {kSide, kHeight, kSide}, {-kSide, kHeight, kSide}}},
+  add_square(scene,
+             {{{-kSide, kHeight, -kSide},
+               {kSide, kHeight, -kSide},
+               {kSide, kHeight, kSide},
+               {-kSide, kHeight, kSide}}},
              light);
 }
 
@@ -72,14 +79,17 @@ void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int rings
     const double polar = kPi * ring / rings;
     const double around = kPi * side / rings;
     if (ring == 0 || ring == rings) return centre + glm::dvec3(0, ring == 0 ? radius : -radius, 0);
-    return centre + radius * glm::dvec3(std::sin(polar) * std::sin(around), std::cos(polar), std::sin(polar) * std::cos(around));
+    return centre + radius * glm::dvec3(std::sin(polar) * std::sin(around), std::cos(polar),
+                                        std::sin(polar) * std::cos(around));
   };
   const int sides = 2 * rings;
   for (int ring = 0; ring < rings; ++ring) {
     for (int side = 0; side < sides; ++side) {
       const int next = (side + 1) % sides;
-      if (ring > 0) add_triangle(scene, point(ring, side), point(ring + 1, next), point(ring, next), material);
-      if (ring + 1 < rings) add_triangle(scene, point(ring, side), point(ring + 1, side), point(ring + 1, next), material);
+      if (ring > 0)
+        add_triangle(scene, point(ring, side), point(ring + 1, next), point(ring, next), material);
+      if (ring + 1 < rings)
+        add_triangle(scene, point(ring, side), point(ring + 1, side), point(ring + 1, next), material);
     }
   }
 }

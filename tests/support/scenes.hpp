@@ -10,16 +10,17 @@ namespace test_support {
 using testbench::FilmSize;
 using testbench::Scene;
 
-/// The cube from -1 to 1, wound so that the inside is the front, 12 triangles of one grey material. The camera is inside,
-/// off centre, and sees faces, edges and a corner.
+/// The cube from -1 to 1, wound so that the inside is the front, 12 triangles of one grey material. The
+/// camera is inside, off centre, and sees faces, edges and a corner.
 Scene closed_cube(double albedo, double emission, FilmSize film);
 
-/// The same of an octahedron subdivided onto the unit sphere: 8 * 4^levels triangles. Where every point sees every other
-/// one under equal cosines the light sampling has hardly any variance; a cube's edges give it an infinite one.
+/// The same of an octahedron subdivided onto the unit sphere: 8 * 4^levels triangles. Where every point sees
+/// every other one under equal cosines the light sampling has hardly any variance; a cube's edges give it an
+/// infinite one.
 Scene closed_sphere(double albedo, double emission, int levels, FilmSize film);
 
-/// A square light of half width `kLightHalfSide` at height `kLightHeight` above a plane y = 0, facing down; it reflects
-/// nothing.
+/// A square light of half width `kLightHalfSide` at height `kLightHeight` above a plane y = 0, facing down;
+/// it reflects nothing.
 struct PlaneAndLight {
   static constexpr double kLightHalfSide = 1.0;
   static constexpr double kLightHeight = 2.0;
@@ -29,8 +30,9 @@ struct PlaneAndLight {
 
 /// Looks down onto the plane from below the light: every pixel lies on the plane.
 Scene plane_under_light(const PlaneAndLight& values, FilmSize film);
-/// Looks up at the light's front: film pixels per unit of length at the light are film.height / 8, so the light's edges
-/// lie on pixel borders of every film whose height is a multiple of 8. Around it there is nothing.
+/// Looks up at the light's front: film pixels per unit of length at the light are film.height / 8, so the
+/// light's edges lie on pixel borders of every film whose height is a multiple of 8. Around it there is
+/// nothing.
 Scene light_from_below(const PlaneAndLight& values, FilmSize film);
 /// Looks down at the light's back, likewise; around it is the plane.
 Scene light_from_above(const PlaneAndLight& values, FilmSize film);

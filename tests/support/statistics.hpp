@@ -25,17 +25,17 @@ inline double normal_threshold(double probability) {
   return high;
 }
 
-/// Bounds P(a count of Binomial(trials, probability) is as far from its mean as `count`, to the same side) from above
-/// (Chernoff; Hoeffding 1963, theorem 1). Holds for any number of trials.
+/// Bounds P(a count of Binomial(trials, probability) is as far from its mean as `count`, to the same side)
+/// from above (Chernoff; Hoeffding 1963, theorem 1). Holds for any number of trials.
 inline double binomial_tail_bound(double count, double trials, double probability) {
   const auto term = [](double a, double b) { return a > 0 ? a * std::log(a / b) : 0.0; };
   const double share = count / trials;
   return std::exp(-trials * (term(share, probability) + term(1 - share, 1 - probability)));
 }
 
-/// How far the mean of `samples` values within [low, low + range] may be from its expectation, except with the given
-/// probability; `variance` is that of the sample (Maurer and Pontil 2009, theorem 4, both sides). Holds for any
-/// distribution and any number of samples.
+/// How far the mean of `samples` values within [low, low + range] may be from its expectation, except with
+/// the given probability; `variance` is that of the sample (Maurer and Pontil 2009, theorem 4, both sides).
+/// Holds for any distribution and any number of samples.
 inline double bounded_mean_error(double variance, double samples, double range, double probability) {
   const double l = std::log(4 / probability);
   return std::sqrt(2 * variance * l / samples) + 7 * range * l / (3 * (samples - 1));

@@ -79,7 +79,7 @@ class IssueTree {
   Node& root() { return root_; }
   const Node& root() const { return root_; }
 
-  /// Ready for the next kernel; keeps the memory of regions.
+  /// Ready for the next kernel.
   void clear() { root_ = Node{}; }
 
   template <class Visitor>  // (const Node&) -> void

@@ -198,13 +198,16 @@ TEST_F(CommandLineErrors, NotesDoNotGoBeforeAnError) {
   expect_error({"render", "scene.toml", "--n", "9"}, {"n: found 9"});
 }
 
-TEST_F(CommandLineErrors, UnwritableOutputs) {
+TEST_F(CommandLineErrors, UnwritableOutputsAreFoundBeforeTheRun) {
+  const auto expect_output_error = [this](const char* option, const std::string& file, const Words& parts) {
+    expect_error({"render", kCornellBox, "--samples", "100000000", option, file}, parts);
+  };
   for (const char* option : {"--exr", "--png", "--stats", "--json", "--vcd"}) {
-    expect_error({"render", kCornellBox, option, "none/a.vcd"}, {"none/a.vcd"});
-    expect_error({"render", kCornellBox, option, "/dev/full.vcd/a.vcd"}, {"/dev/full.vcd"});
+    expect_output_error(option, "none/a.vcd", {"none/a.vcd"});
+    expect_output_error(option, "/dev/null/a.vcd", {"/dev/null/a.vcd"});
   }
-  expect_error({"render", kCornellBox, "--exr", "."}, {"directory"});
-  expect_error({"render", kCornellBox, "--png", "/dev/null"}, {"/dev/null"});
+  expect_output_error("--exr", ".", {"directory"});
+  expect_output_error("--png", "/dev/null", {"/dev/null"});
   expect_error({"params", "--json", "none/a.json"}, {"none/a.json"});
   expect_error({"reproduce", kCornellBox, "--json", "none/a.json"}, {"none/a.json"});
 }

@@ -11,6 +11,9 @@
 namespace test_support {
 namespace {
 
+/// A run that takes longer is ended by a signal: it was not meant to start.
+constexpr unsigned kMostSeconds = 100;
+
 std::filesystem::path output_of(pid_t child, const std::filesystem::path& directory, const char* name) {
   return directory.string() + "." + std::to_string(child) + "." + name;
 }
@@ -59,6 +62,7 @@ pid_t CommandLineFixture::start(const std::vector<std::string>& arguments) {
   if (child == 0) {
     redirect(STDOUT_FILENO, output_of(getpid(), directory_, "out"));
     redirect(STDERR_FILENO, output_of(getpid(), directory_, "error"));
+    alarm(kMostSeconds);
     if (chdir(directory_.c_str()) == 0) execv(pointers[0], pointers.data());
     _exit(127);
   }

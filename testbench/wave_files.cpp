@@ -59,7 +59,10 @@ void WaveFiles::finish() {
   try {
     probe_->finish();
   } catch (const model::WaveError& error) {
-    throw RunError(error.what());
+    std::string message = error.what();  // speaks of the temporary name
+    const std::size_t found = message.find(temporary_.string());
+    if (found != std::string::npos) message.replace(found, temporary_.string().size(), vcd_.string());
+    throw RunError(message);
   }
   std::filesystem::rename(temporary_, vcd_);
   write_view();

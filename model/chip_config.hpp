@@ -39,8 +39,7 @@ struct ChipConfig {
     int setup_cycles;         ///< a request
     int per_pe_cycles;        ///< a participating PE
     int bytes_per_cycle;      ///< into or out of one PE
-    int misalignment_cycles;  ///< a PE whose mono address is not 8-byte aligned or whose piece crosses a
-                              ///< packet
+    int misalignment_cycles;  ///< a PE whose piece is off 8 bytes or spread over more packets than it needs
     bool consolidate_equal_addresses;
     int stolen_sram_cycles;  ///< SRAM port cycles taken for 8 bytes
   } pio;

@@ -210,8 +210,8 @@ void declare_pio(Parameters& table) {
                                                         "into or out of one PE [reference, section 9]"));
   table.push_back(integer<group, &Pio::misalignment_cycles>(
       "pio.misalignment_cycles", "cycles/PE", 8, {0, kMaxCycles}, assumed,
-      "extra for a PE whose mono address is not 8-byte aligned or whose piece crosses a packet; effect "
-      "measured [S13]"));
+      "extra for a PE whose mono address is not 8-byte aligned or whose piece lies in more packets than its "
+      "size needs; effect measured [S13]"));
   table.push_back(
       {"pio.consolidate_equal_addresses", "-", false, TrueOrFalse{}, assumed,
        "PEs that ask for the same address are served by one access; patent [S15g], not known of the silicon",

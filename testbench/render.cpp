@@ -68,7 +68,6 @@ class Run {
   void firmware(cn::Machine& machine) {
     path_tracer::PathTracer tracer(machine, path_tracer::kernels(options_.level), options_.program,
                                    image_.layout, options_.work);
-    result_.poly_memory_map = machine.poly_memory().map();
     tracer.run(std::ref(relay_));
     result_.counts = tracer.counts();
   }

@@ -27,7 +27,6 @@ struct RenderResult {
 
   Film film;
   path_tracer::RunCounts counts;
-  std::string poly_memory_map;
   std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip
   double cpu_seconds = 0;              ///< of the run itself, without loading and writing
   double wall_seconds = 0;

@@ -153,8 +153,7 @@ void RenderCommand::run() {
     std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", scene.c_str(),
                  loaded.degenerate_triangles);
   std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
-              loaded.film.width, loaded.film.height, request.options.work.samples,
-              render_statistics(request, result)["firmware"]["program"].get<std::string>().c_str(),
+              loaded.film.width, loaded.film.height, request.options.work.samples, program.c_str(),
               request.options.program.n, buffer.c_str(),
               native ? "native" : request.options.chip.preset.c_str());
   std::fputs(render_table(request, result).c_str(), stdout);

@@ -84,7 +84,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces) {
     record.edge1 = to_record(triangle.vertex[1] - triangle.vertex[0]);
     record.edge2 = to_record(triangle.vertex[2] - triangle.vertex[0]);
     record.normal = to_record(glm::normalize(twice_area));
-    record.emission_over_pdf = to_record(material.emission / pdf);
+    record.inverse_pdf = 1.0 / pdf;
     record.face = faces[i];
     lights.records.push_back(record);
     power_so_far += power;

@@ -11,7 +11,7 @@ IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
   const auto scatter = cutter.take<ScatterRecord>();
   if (context_.config.program == Program::segments) return {scatter, {}};
-  return {scatter, cutter.take<ShadowRecord>()};
+  return {scatter, cutter.take<ShadingRecord>()};
 }
 
 void IntersectionStage::load(std::uint64_t step, int block) {
@@ -45,7 +45,7 @@ void IntersectionStage::process(std::uint64_t step, int block) {
     arguments.light_place = bin.light_place;
   }
   arguments.scatter = to.scatter;
-  arguments.shadow = to.shadow;
+  arguments.shading = to.shading;
   arguments.wants_light = &bin.wants_light;
   context_.machine.run(context_.kernels.scatter, arguments, bin.live);
 }
@@ -55,7 +55,7 @@ void IntersectionStage::save(std::uint64_t step, int block) {
   const Bins::Block& bin = bin_block(block);
   save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.live);
   if (context_.config.program != Program::segments)
-    save_block(step, block, context_.layout.shadow_bin, from.shadow, bin.wants_light);
+    save_block(step, block, context_.layout.shading_bin, from.shading, bin.wants_light);
 }
 
 }  // namespace path_tracer

@@ -72,34 +72,42 @@ void scatter(const ScatterArguments& arguments) {
   const Uniform4 on_light = uniform4(arguments.seed, pixel, sample, depth, Purpose::light);
   const poly<std::int32_t> light = sample_cdf(arguments.light_cdf, arguments.light_count, random.value[3]);
   arguments.light_place.write(place_of(arguments.lights, light, sizeof(LightRecord)));
-  arguments.shadow.set(&ShadowRecord::position, position);
-  arguments.shadow.set(&ShadowRecord::normal, normal);
-  arguments.shadow.set(&ShadowRecord::reflectance_over_pi, reflectance * (1.0 / kPi));
-  arguments.shadow.set(&ShadowRecord::light_u, on_light.value[0]);
-  arguments.shadow.set(&ShadowRecord::light_v, on_light.value[1]);
-  arguments.shadow.set(&ShadowRecord::face, face);
+  arguments.shading.set(&ShadingRecord::position, position);
+  arguments.shading.set(&ShadingRecord::normal, normal);
+  arguments.shading.set(&ShadingRecord::reflectance_over_pi, reflectance * (1.0 / kPi));
+  arguments.shading.set(&ShadingRecord::light_u, on_light.value[0]);
+  arguments.shading.set(&ShadingRecord::light_v, on_light.value[1]);
+  arguments.shading.set(&ShadingRecord::face, face);
   cn::keep(hit & (largest(reflectance) > 0.0), *arguments.wants_light);
 }
 
-void shadow(const ShadowArguments& arguments) {
-  const Point3 position = arguments.shadow.get(&ShadowRecord::position);
-  const Direction3 normal = arguments.shadow.get(&ShadowRecord::normal);
-  const Point3 on_light =
-      sample_triangle(arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
-                      arguments.light.get(&LightRecord::edge2), arguments.shadow.get(&ShadowRecord::light_u),
-                      arguments.shadow.get(&ShadowRecord::light_v));
+void aim(const AimArguments& arguments) {
+  const Point3 position = arguments.shading.get(&ShadingRecord::position);
+  const Point3 on_light = sample_triangle(
+      arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
+      arguments.light.get(&LightRecord::edge2), arguments.shading.get(&ShadingRecord::light_u),
+      arguments.shading.get(&ShadingRecord::light_v));
   const Direction3 to_light = on_light - position;
-  const poly<double> distance_squared = dot(to_light, to_light);
-  const poly<double> cosine_here = dot(to_light, normal);  // both cosines are scaled by the distance
+  // Both cosines are scaled by the distance.
+  const poly<double> cosine_here = dot(to_light, arguments.shading.get(&ShadingRecord::normal));
   const poly<double> cosine_there = -dot(to_light, arguments.light.get(&LightRecord::normal));
-  const mask faces = (cosine_here > 0.0) & (cosine_there > 0.0);
-  const mask blocked =
-      is_blocked(position, to_light, arguments.shadow.get(&ShadowRecord::face),
-                 arguments.light.get(&LightRecord::face), arguments.triangles, arguments.triangle_count);
-  const mask sees = faces & !blocked;
+  const poly<double> distance_squared = dot(to_light, to_light);
   const poly<double> geometry = cosine_here * cosine_there / (distance_squared * distance_squared);
-  const vec3<poly<double>> light = arguments.light.get(&LightRecord::emission_over_pdf) *
-                                   arguments.shadow.get(&ShadowRecord::reflectance_over_pi) * geometry;
+  arguments.ray.set(&RayRecord::origin, position);
+  arguments.ray.set(&RayRecord::direction, to_light);
+  arguments.ray.set(&RayRecord::left_face, arguments.shading.get(&ShadingRecord::face));
+  arguments.lighting.set(&LightingRecord::weight,
+                         arguments.shading.get(&ShadingRecord::reflectance_over_pi) *
+                             (geometry * arguments.light.get(&LightRecord::inverse_pdf)));
+  arguments.lighting.set(&LightingRecord::light_face, arguments.light.get(&LightRecord::face));
+  cn::keep((cosine_here > 0.0) & (cosine_there > 0.0), *arguments.can_see);
+}
+
+void illuminate(const IlluminateArguments& arguments) {
+  const mask sees =
+      arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face);
+  const vec3<poly<double>> light =
+      arguments.surface.get(&SurfaceRecord::emission) * arguments.lighting.get(&LightingRecord::weight);
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
   arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
 }
@@ -180,45 +188,69 @@ void finished_place(const FinishedPlaceArguments& arguments) {
 }
 
 void list(const ListArguments& arguments) {
+  const FinishedPath& path = arguments.path;
   const poly<std::int32_t> slot = arguments.entry.get(&FinishedRecord::slot);
   const poly<std::int32_t> vertices = arguments.entry.get(&FinishedRecord::vertices);
-  arguments.vertex_place.write(
+  const mask ended = arguments.entry.get(&FinishedRecord::ended) != 0;
+  path.vertex_place.write(
       place_of(arguments.vertices, slot, std::size_t(arguments.slot_vertices) * sizeof(VertexRecord)));
-  arguments.fold_place.write(place_of(arguments.folds, slot, sizeof(FoldRecord)));
+  path.fold_place.write(place_of(arguments.folds, slot, sizeof(FoldRecord)));
+  path.vertices.write(vertices);
+  path.pixel.write(cn::select(ended, arguments.entry.get(&FinishedRecord::pixel), poly<std::int32_t>(-1)));
+  path.sample.write(arguments.entry.get(&FinishedRecord::sample));
   for (int load = 0; load * kVerticesPerLoad < arguments.slot_vertices; ++load)
     cn::keep(vertices > load * kVerticesPerLoad, arguments.needs_load[load]);
   cn::keep(arguments.entry.get(&FinishedRecord::folded) != 0, *arguments.folded);
-  cn::keep(arguments.entry.get(&FinishedRecord::ended) == 0, *arguments.flushed);
+  cn::keep(!ended, *arguments.flushed);
 }
 
+struct FoldSum {
+  vec3<poly<double>> radiance;
+  vec3<poly<double>> throughput;
+};
+
+/// Puts the vertices that were folded when the slot was full before those of `sum`.
+void join_earlier(const FoldArguments& arguments, FoldSum& sum) {
+  cn::poly_if(kept_mask(*arguments.folded), [&] {
+    const vec3<poly<double>> throughput = arguments.earlier.get(&FoldRecord::throughput);
+    sum.radiance = arguments.earlier.get(&FoldRecord::radiance) + throughput * sum.radiance;
+    if (arguments.any_flushed) sum.throughput = throughput * sum.throughput;
+  });
+}
+
+void save_sum(const FoldArguments& arguments, const FoldSum& sum) {
+  arguments.radiance.set(&RadianceRecord::radiance, sum.radiance);
+  arguments.radiance.set(&RadianceRecord::pixel, arguments.path.pixel.read());
+  arguments.radiance.set(&RadianceRecord::sample, arguments.path.sample.read());
+  if (!arguments.any_flushed) return;
+  arguments.flushed.set(&FoldRecord::radiance, sum.radiance);
+  arguments.flushed.set(&FoldRecord::throughput, sum.throughput);
+}
+
+/// The recursion L = radiance + weight * L, from a path's last vertex to its first. Where only some of a path
+/// is here, the product of its weights goes along.
 void fold(const FoldArguments& arguments) {
-  vec3<poly<double>> radiance = arguments.sum.get(&FoldRecord::radiance);
-  vec3<poly<double>> throughput = arguments.sum.get(&FoldRecord::throughput);
-  if (arguments.first_vertex == 0) {
-    const mask folded = arguments.entry.get(&FinishedRecord::folded) != 0;
-    const vec3<poly<double>> none{0.0, 0.0, 0.0};
-    const vec3<poly<double>> one{1.0, 1.0, 1.0};
-    radiance = cn::select(folded, arguments.earlier.get(&FoldRecord::radiance), none);
-    throughput = cn::select(folded, arguments.earlier.get(&FoldRecord::throughput), one);
+  FoldSum sum{{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
+  if (!arguments.starts) {
+    sum.radiance = arguments.sum.get(&FoldRecord::radiance);
+    if (arguments.any_flushed) sum.throughput = arguments.sum.get(&FoldRecord::throughput);
   }
-  const poly<std::int32_t> vertices = arguments.entry.get(&FinishedRecord::vertices);
-  for (int i = 0; i < kVerticesPerLoad; ++i) {
+  const poly<std::int32_t> vertices = arguments.path.vertices.read();
+  for (int i = kVerticesPerLoad - 1; i >= 0; --i) {
     cn::poly_if(vertices > arguments.first_vertex + i, [&] {
       const PolyPointer<VertexRecord> vertex = arguments.vertices[i];
-      radiance = radiance + throughput * vertex.get(&VertexRecord::radiance);
-      throughput = throughput * vertex.get(&VertexRecord::weight);
+      const vec3<poly<double>> weight = vertex.get(&VertexRecord::weight);
+      sum.radiance = vertex.get(&VertexRecord::radiance) + weight * sum.radiance;
+      if (arguments.any_flushed) sum.throughput = weight * sum.throughput;
     });
   }
-  arguments.sum.set(&FoldRecord::radiance, radiance);
-  arguments.sum.set(&FoldRecord::throughput, throughput);
-  arguments.flushed.set(&FoldRecord::radiance, radiance);
-  arguments.flushed.set(&FoldRecord::throughput, throughput);
-
-  const mask ended = arguments.entry.get(&FinishedRecord::ended) != 0;
-  const poly<std::int32_t> pixel = arguments.entry.get(&FinishedRecord::pixel);
-  arguments.radiance.set(&RadianceRecord::radiance, radiance);
-  arguments.radiance.set(&RadianceRecord::pixel, cn::select(ended, pixel, poly<std::int32_t>(-1)));
-  arguments.radiance.set(&RadianceRecord::sample, arguments.entry.get(&FinishedRecord::sample));
+  if (arguments.first_vertex > 0) {
+    arguments.sum.set(&FoldRecord::radiance, sum.radiance);
+    if (arguments.any_flushed) arguments.sum.set(&FoldRecord::throughput, sum.throughput);
+    return;
+  }
+  if (arguments.folded != nullptr) join_earlier(arguments, sum);
+  save_sum(arguments, sum);
 }
 
 template <class Arguments, void (*program)(const Arguments&)>
@@ -232,7 +264,8 @@ const Kernels& PATH_TRACER_KERNELS() {
   static constexpr Kernels table{
       kernel<IntersectArguments, intersect>("intersect"),
       kernel<ScatterArguments, scatter>("scatter"),
-      kernel<ShadowArguments, shadow>("shadow"),
+      kernel<AimArguments, aim>("aim"),
+      kernel<IlluminateArguments, illuminate>("illuminate"),
       kernel<AppendArguments, append>("append"),
       kernel<ReplaceArguments, replace>("replace"),
       kernel<FinishedPlaceArguments, finished_place>("finished_place"),

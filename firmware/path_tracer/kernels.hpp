@@ -13,14 +13,14 @@ using cn::MonoAddress;
 using cn::PolyField;
 using cn::PolyPointer;
 
-/// Ray stage: the nearest triangle along each ray, tested one by one.
+/// Ray stage and shadow ray stage: the nearest triangle along each ray, tested one by one.
 struct IntersectArguments {
   PolyPointer<RayRecord> ray;
   const TriangleRecord* triangles = nullptr;
   int triangle_count = 0;
   MonoAddress surfaces = 0;
   PolyPointer<HitRecord> hit;
-  PolyField<MonoAddress> surface_place;  ///< kept for the intersection stage's gather
+  PolyField<MonoAddress> surface_place;  ///< kept for the gather of the next stage
   LaneMask* hit_something = nullptr;
 };
 
@@ -37,17 +37,24 @@ struct ScatterArguments {
   int light_count = 0;
   MonoAddress lights = 0;
   PolyPointer<ScatterRecord> scatter;
-  PolyPointer<ShadowRecord> shadow;
-  PolyField<MonoAddress> light_place;  ///< kept for the shadow stage's gather
+  PolyPointer<ShadingRecord> shading;
+  PolyField<MonoAddress> light_place;  ///< kept for the light stage's gather
   LaneMask* wants_light = nullptr;
 };
 
-/// Shadow stage: light from one point of one light, if nothing is in between.
-struct ShadowArguments {
-  PolyPointer<ShadowRecord> shadow;
+/// Light stage: a shadow ray to a point of the chosen light, and what its answer will be worth.
+struct AimArguments {
+  PolyPointer<ShadingRecord> shading;
   PolyPointer<LightRecord> light;
-  const TriangleRecord* triangles = nullptr;
-  int triangle_count = 0;
+  PolyPointer<RayRecord> ray;
+  PolyPointer<LightingRecord> lighting;
+  LaneMask* can_see = nullptr;  ///< neither the surface nor the light turns its back on the other
+};
+
+/// Lighting stage: direct light, if the shadow ray reached the light.
+struct IlluminateArguments {
+  PolyPointer<SurfaceRecord> surface;  ///< that the shadow ray hit
+  PolyPointer<LightingRecord> lighting;
   PolyPointer<DirectLightRecord> direct_light;
 };
 
@@ -91,34 +98,46 @@ struct FinishedPlaceArguments {
   PolyField<MonoAddress> finished_place;
 };
 
+/// What the control unit keeps in poly memory of each finished path while its vertices are added up.
+struct FinishedPath {
+  PolyField<MonoAddress> vertex_place;  ///< of its first vertex
+  PolyField<MonoAddress> fold_place;
+  PolyField<std::int32_t> vertices;
+  PolyField<std::int32_t> pixel;  ///< -1 for a path that goes on
+  PolyField<std::int32_t> sample;
+};
+
 /// Radiance stage, list step: where the vertices are, and which loads of kVerticesPerLoad each path needs.
 struct ListArguments {
   PolyPointer<FinishedRecord> entry;
   MonoAddress vertices = 0;
   MonoAddress folds = 0;
   int slot_vertices = 0;
-  PolyField<MonoAddress> vertex_place;  ///< kept for the fold steps
-  PolyField<MonoAddress> fold_place;
+  FinishedPath path;
   LaneMask* needs_load = nullptr;  ///< slot_vertices / kVerticesPerLoad masks
   LaneMask* folded = nullptr;
   LaneMask* flushed = nullptr;
 };
 
-/// Radiance stage, fold step: adds kVerticesPerLoad vertices of each path.
+/// Radiance stage, fold step: adds kVerticesPerLoad vertices of each path, the last ones of the path first.
 struct FoldArguments {
-  PolyPointer<FinishedRecord> entry;
+  FinishedPath path;
   PolyPointer<VertexRecord> vertices;
-  PolyPointer<FoldRecord> earlier;  ///< read in the first step by paths that were folded before
-  PolyPointer<FoldRecord> sum;      ///< carried from step to step
   int first_vertex = 0;
-  PolyPointer<RadianceRecord> radiance;  ///< written in every step; the last one counts
+  bool starts = false;                   ///< no vertices behind these
+  bool any_flushed = false;              ///< then the throughput is wanted, too
+  const LaneMask* folded = nullptr;      ///< in the last step: paths with vertices before these, or nothing
+  PolyPointer<FoldRecord> earlier;       ///< those vertices
+  PolyPointer<FoldRecord> sum;           ///< carried from step to step
+  PolyPointer<RadianceRecord> radiance;  ///< written in the last step
   PolyPointer<FoldRecord> flushed;       ///< the same, for paths that go on
 };
 
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
   cn::Kernel<ScatterArguments> scatter;
-  cn::Kernel<ShadowArguments> shadow;
+  cn::Kernel<AimArguments> aim;
+  cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;
   cn::Kernel<ReplaceArguments> replace;
   cn::Kernel<FinishedPlaceArguments> finished_place;

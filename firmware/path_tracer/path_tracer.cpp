@@ -11,15 +11,17 @@ constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config) {
   int bytes = std::max({RayStage::kLoadBytes, IntersectionStage::kLoadBytes, PathStage::kLoadBytes});
-  if (config.program != Program::segments) bytes = std::max(bytes, ShadowStage::kLoadBytes);
+  if (config.program != Program::segments)
+    bytes = std::max({bytes, LightStage::kLoadBytes, LightingStage::kLoadBytes});
   if (config.program == Program::full) bytes = std::max(bytes, RadianceStage::kLoadBytes);
   return bytes;
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  int bytes = std::max(RayStage::kSaveBytes, PathStage::kSaveBytes);
-  const int shadow_bytes = config.program != Program::segments ? int{sizeof(ShadowRecord)} : 0;
-  bytes = std::max(bytes, int{sizeof(ScatterRecord)} + shadow_bytes);
+  int bytes = std::max({RayStage::kSaveBytes, PathStage::kSaveBytes, int{sizeof(ScatterRecord)}});
+  if (config.program != Program::segments)
+    bytes =
+        std::max({bytes, IntersectionStage::kSaveBytes, LightStage::kSaveBytes, LightingStage::kSaveBytes});
   if (config.program == Program::full) bytes = std::max(bytes, RadianceStage::kSaveBytes);
   return bytes;
 }
@@ -65,6 +67,7 @@ std::unique_ptr<TransferRing> untimed_ring(cn::Machine& machine, const ProgramCo
 PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
                        const Layout& layout, const Work& work)
     : machine_(with_host_semaphores(machine)),
+      kernels_(kernels),
       config_(valid(config)),
       layout_(layout),
       bins_(make_bins(machine, config.bin_blocks)),
@@ -72,16 +75,18 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       saves_(machine, "save buffer", config.save_buffers(), save_buffer_bytes(config)),
       untimed_loads_(untimed_ring(machine, config, "untimed load buffer", RadianceStage::kLoadBytes)),
       untimed_saves_(untimed_ring(machine, config, "untimed save buffer", RadianceStage::kSaveBytes)),
-      ray_stage_({machine, kernels, config_, layout_, loads_, saves_, bins_, counts_}),
-      intersection_stage_({machine, kernels, config_, layout_, loads_, saves_, bins_, counts_}),
-      shadow_stage_({machine, kernels, config_, layout_, loads_, saves_, bins_, counts_}),
-      path_stage_({machine, kernels, config_, layout_, loads_, saves_, bins_, counts_}, work),
+      ray_stage_(context(), RayStage::Rays::segments),
+      intersection_stage_(context()),
+      light_stage_(context()),
+      shadow_ray_stage_(context(), RayStage::Rays::shadow_rays),
+      lighting_stage_(context()),
+      path_stage_(context(), work),
       radiance_stage_({machine, kernels, config_, layout_, untimed_loads_ ? *untimed_loads_ : loads_,
                        untimed_saves_ ? *untimed_saves_ : saves_, bins_, counts_}) {}
 
 void PathTracer::run(const Progress& progress) {
   fill_bins();
-  while (!steps_.empty()) {
+  for (issue_loads(); !loading_.empty(); issue_loads()) {
     if (progress && !progress(path_stage_.camera_rays().issued())) return;
     run_step();
   }
@@ -99,49 +104,63 @@ void PathTracer::fill_bins() {
     path_stage_.save(step, block);
     if (!config_.buffer_saves) saves_.wait(step);
     live_blocks_.push_back(block);
+    plan(ray_stage_, block);
   }
-  for (const int block : live_blocks_) plan(ray_stage_, block);
   plan_pass();
 }
 
 /// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before.
 void PathTracer::plan_pass() {
-  for (const int block : live_blocks_) plan(intersection_stage_, block);
-  if (config_.program != Program::segments)
-    for (const int block : live_blocks_) plan(shadow_stage_, block);
-  for (const int block : live_blocks_) plan(path_stage_, block);
+  const auto plan_blocks = [this](Stage& stage) {
+    for (const int block : live_blocks_) plan(stage, block);
+  };
+  plan_blocks(intersection_stage_);
+  if (config_.program != Program::segments) {
+    plan_blocks(light_stage_);
+    plan_blocks(shadow_ray_stage_);
+    plan_blocks(lighting_stage_);
+  }
+  plan_blocks(path_stage_);
   path_steps_left_ = static_cast<int>(live_blocks_.size());
   counts_.blocks += live_blocks_.size();
   if (!live_blocks_.empty()) counts_.skipped_blocks += std::size_t(config_.bin_blocks) - live_blocks_.size();
   live_blocks_.clear();
 }
 
+/// Where the next step comes from: the bins, or radiance after every ray step as long as there is some. It
+/// must be through before the pass goes on, because path steps overwrite the vertices. Nothing when that is
+/// not known yet.
+PathTracer::Steps* PathTracer::next_steps() {
+  const bool ray_step_is_next = !bin_steps_.empty() && bin_steps_.front().stage == &ray_stage_;
+  if (ray_step_is_next && (rays_before_radiance_ > 0 || radiance_steps_.empty())) return &bin_steps_;
+  if (!radiance_steps_.empty()) return &radiance_steps_;
+  return bin_steps_.empty() || list_steps_left_ > 0 ? nullptr : &bin_steps_;
+}
+
 /// A step's records come from earlier steps on the same block of the bins. Few live blocks bring the two so
 /// close that the earlier one has not run yet. Radiance steps are only planned when what they read is there.
-bool PathTracer::can_load(std::size_t ahead) const {
-  const auto is_radiance = [this](const Step& step) {
-    return step.stage == &radiance_stage_.list() || step.stage == &radiance_stage_.fold();
-  };
-  const Step& wanted = steps_[ahead];
-  if (is_radiance(wanted)) return true;
-  return std::none_of(
-      steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(ahead),
-      [&](const Step& earlier) { return !is_radiance(earlier) && earlier.block == wanted.block; });
+bool PathTracer::can_load(const Step& step) const {
+  return is_radiance(step) || std::none_of(loading_.begin(), loading_.end(), [&](const Step& earlier) {
+           return !is_radiance(earlier) && earlier.block == step.block;
+         });
 }
 
 void PathTracer::issue_loads() {
-  const std::size_t wanted = std::min(steps_.size(), std::size_t(config_.load_buffers()));
-  for (; loads_issued_ < wanted && can_load(loads_issued_); ++loads_issued_) {
-    const Step& ahead = steps_[loads_issued_];
-    ahead.stage->load(ahead.number, ahead.block);
+  while (loading_.size() < std::size_t(config_.load_buffers())) {
+    Steps* const steps = next_steps();
+    if (steps == nullptr || !can_load(steps->front())) return;
+    Step step = steps->front();
+    steps->pop_front();
+    step.number = next_step_++;
+    step.stage->load(step.number, step.block);
+    loading_.push_back(step);
+    rays_before_radiance_ = is_radiance(step) ? 1 : rays_before_radiance_ - 1;
   }
 }
 
 void PathTracer::run_step() {
-  issue_loads();
-  const Step step = steps_.front();
-  steps_.pop_front();
-  --loads_issued_;
+  const Step step = loading_.front();
+  loading_.pop_front();
   loads_.wait(step.number);
   saves_.wait(step.number);
   step.stage->process(step.number, step.block);
@@ -158,45 +177,38 @@ void PathTracer::run_step() {
 }
 
 void PathTracer::after_path_step(int block) {
-  if (radiance_is_timed() && results_records_ > 0) announce_results();
+  if (radiance_is_timed()) announce_results();
   if (bins_.blocks[std::size_t(block)].live_count > 0) {
     live_blocks_.push_back(block);
-    if (!radiance_is_timed()) plan(ray_stage_, block);
+    plan(ray_stage_, block);
   }
-  const bool last = --path_steps_left_ == 0;
+  if (--path_steps_left_ > 0) return;
   if (radiance_is_timed()) {
-    // A block of the list can be worked on as soon as it is full, the last one when no path step can add to
-    // it.
-    const int finished = path_stage_.finished_count();
-    while (finished >= (listed_blocks_ + 1) * machine_.num_pes() ||
-           (last && finished > listed_blocks_ * machine_.num_pes())) {
-      radiance_stage_.begin_block(
-          listed_blocks_, std::min(machine_.num_pes(), finished - listed_blocks_ * machine_.num_pes()));
-      plan(radiance_stage_.list(), listed_blocks_++);
-      ++list_steps_left_;
-    }
+    plan_radiance_of_pass();
+  } else {
+    run_untimed_radiance();
   }
-  if (last && list_steps_left_ == 0) end_pass();
+  path_stage_.clear_finished();
+  plan_pass();
+}
+
+/// The first list step waits for the saves of the last path step; some ray steps before it hide that.
+void PathTracer::plan_radiance_of_pass() {
+  results_records_ = path_stage_.finished_count();
+  radiance_stage_.fold().set_results(layout_.results[results_half_]);
+  const int width = machine_.num_pes();
+  for (int block = 0; block * width < results_records_; ++block) {
+    radiance_stage_.begin_block(block, std::min(width, results_records_ - block * width));
+    plan_radiance(radiance_stage_.list(), block);
+    ++list_steps_left_;
+  }
+  rays_before_radiance_ = config_.load_buffers();
 }
 
 void PathTracer::after_list_step(int block) {
-  if (block == 0) radiance_stage_.fold().set_results(layout_.results[results_half_]);
-  for (int load = 0; load < radiance_stage_.loads(block); ++load)
-    plan(radiance_stage_.fold(), radiance_stage_.fold_block(block, load));
-  if (--list_steps_left_ == 0 && path_steps_left_ == 0) end_pass();
-}
-
-/// All of this pass is planned: radiance is done or on its way, the next pass's blocks are known.
-void PathTracer::end_pass() {
-  if (!radiance_is_timed()) {
-    run_untimed_radiance();
-  } else {
-    results_records_ = path_stage_.finished_count();
-    for (const int block : live_blocks_) plan(ray_stage_, block);
-  }
-  path_stage_.clear_finished();
-  listed_blocks_ = 0;
-  plan_pass();
+  for (int load = radiance_stage_.loads(block) - 1; load >= 0; --load)
+    plan_radiance(radiance_stage_.fold(), radiance_stage_.fold_block(block, load));
+  --list_steps_left_;
 }
 
 /// Tells the host which half of the results it may read, and makes sure that the other half is free.
@@ -226,7 +238,7 @@ void PathTracer::run_untimed_radiance() {
   for (int block = 0; block * width < finished; ++block) {
     radiance_stage_.begin_block(block, std::min(width, finished - block * width));
     run(radiance_stage_.list(), block);
-    for (int load = 0; load < radiance_stage_.loads(block); ++load)
+    for (int load = radiance_stage_.loads(block) - 1; load >= 0; --load)
       run(radiance_stage_.fold(), radiance_stage_.fold_block(block, load));
   }
   results_records_ = finished;

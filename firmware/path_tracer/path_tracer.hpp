@@ -19,9 +19,10 @@ struct HostSemaphores {
 /// The firmware's main program: binned, n-buffered path tracing (paper, section 3).
 ///
 /// A step is one stage on one block. Steps run one after the other: all blocks through the ray bin, then the
-/// intersection bin, the shadow rays and the path bin, then the radiance of the paths that finished, and
-/// again until no camera ray and no path is left. While step m is processed, the loads of steps m+1..m+n and
-/// the saves of steps m-1..m-n are under way, across the borders between bins.
+/// intersection bin, the shadow rays and the path bin, and again until no camera ray and no path is left. The
+/// radiance of the paths that finished is computed between the ray steps of the next pass: its transfers are
+/// long and its kernels short, the ray bin's are the other way round. While step m is processed, the loads of
+/// steps m+1..m+n and the saves of steps m-1..m-n are under way, across the borders between bins.
 class PathTracer {
  public:
   /// `machine` has the scene image of `layout` in mono memory. Throws ProgramError, cn::PolyMemoryOverflow.
@@ -39,23 +40,31 @@ class PathTracer {
   struct Step {
     Stage* stage;
     int block;
-    std::uint64_t number;
+    std::uint64_t number;  ///< in the order of loading, which is that of processing
   };
+  using Steps = std::deque<Step>;
 
-  void plan(Stage& stage, int block) { steps_.push_back({&stage, block, next_step_++}); }
-  bool can_load(std::size_t ahead) const;
+  void plan(Stage& stage, int block) { bin_steps_.push_back({&stage, block, 0}); }
+  void plan_radiance(Stage& stage, int block) { radiance_steps_.push_back({&stage, block, 0}); }
+  Steps* next_steps();
+  bool can_load(const Step& step) const;
+  bool is_radiance(const Step& step) const {
+    return step.stage == &radiance_stage_.list() || step.stage == &radiance_stage_.fold();
+  }
   void fill_bins();
-  void run_step();
   void issue_loads();
+  void run_step();
   void after_path_step(int block);
   void after_list_step(int block);
   void plan_pass();
-  void end_pass();
+  void plan_radiance_of_pass();
   void announce_results();
   void run_untimed_radiance();
+  StageContext context() { return {machine_, kernels_, config_, layout_, loads_, saves_, bins_, counts_}; }
   bool radiance_is_timed() const { return config_.program == Program::full; }
 
   cn::Machine& machine_;
+  const Kernels& kernels_;
   ProgramConfig config_;
   Layout layout_;
   RunCounts counts_;
@@ -66,18 +75,21 @@ class PathTracer {
   std::unique_ptr<TransferRing> untimed_saves_;
   RayStage ray_stage_;
   IntersectionStage intersection_stage_;
-  ShadowStage shadow_stage_;
+  LightStage light_stage_;
+  RayStage shadow_ray_stage_;
+  LightingStage lighting_stage_;
   PathStage path_stage_;
   RadianceStage radiance_stage_;
 
-  std::deque<Step> steps_;        ///< known and not yet run
-  std::size_t loads_issued_ = 0;  ///< of the steps at the front
+  Steps bin_steps_;       ///< planned, in order
+  Steps radiance_steps_;  ///< planned, to be put between ray steps
+  Steps loading_;         ///< their loads are under way or done; the front is processed next
   std::uint64_t next_step_ = 0;
+  int rays_before_radiance_ = 0;  ///< ray steps still to be loaded before the next radiance step
 
   std::vector<int> live_blocks_;  ///< of the pass that is being planned
   int path_steps_left_ = 0;       ///< of the pass that runs
-  int listed_blocks_ = 0;         ///< list steps planned in this pass
-  int list_steps_left_ = 0;
+  int list_steps_left_ = 0;       ///< of the pass before; each will plan fold steps
 
   int results_half_ = 0;
   int results_records_ = 0;  ///< finished but not yet announced

@@ -71,7 +71,8 @@ struct Layout {
   cn::MonoPointer<RayRecord> ray_bin;
   cn::MonoPointer<HitRecord> intersection_bin;
   cn::MonoPointer<ScatterRecord> scatter_bin;
-  cn::MonoPointer<ShadowRecord> shadow_bin;
+  cn::MonoPointer<ShadingRecord> shading_bin;
+  cn::MonoPointer<LightingRecord> lighting_bin;
   cn::MonoPointer<DirectLightRecord> direct_light_bin;
   cn::MonoPointer<PathRecord> path_bin;
   cn::MonoPointer<VertexRecord> vertices;

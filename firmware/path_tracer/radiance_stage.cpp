@@ -8,12 +8,15 @@ RadianceStage::RadianceStage(const StageContext& context)
       list_(context, blocks_),
       fold_(context, blocks_) {
   cn::PolyMemory& memory = context.machine.poly_memory();
-  const int places_bytes = static_cast<int>(sizeof(MonoAddress)) * context.config.bin_blocks;
-  BufferCutter vertex_places(memory.allocate("vertex places", places_bytes));
-  BufferCutter fold_places(memory.allocate("fold places", places_bytes));
+  constexpr int kPathBytes = 2 * sizeof(MonoAddress) + 4 * sizeof(std::int32_t);
+  BufferCutter paths(memory.allocate("finished paths", kPathBytes * context.config.bin_blocks));
   for (ListBlock& block : blocks_) {
-    block.vertex_place = vertex_places.take_place();
-    block.fold_place = fold_places.take_place();
+    block.path.vertex_place = paths.take_place();
+    block.path.fold_place = paths.take_place();
+    block.path.vertices = paths.take_field<std::int32_t>();
+    block.path.pixel = paths.take_field<std::int32_t>();
+    block.path.sample = paths.take_field<std::int32_t>();
+    paths.take_field<std::int32_t>();
     block.needs_load.resize(std::size_t(loads_per_path_));
   }
 }
@@ -35,12 +38,13 @@ void RadianceStage::ListStage::process(std::uint64_t step, int block) {
   arguments.vertices = context_.layout.vertices.address;
   arguments.folds = context_.layout.folds.address;
   arguments.slot_vertices = context_.config.slot_vertices;
-  arguments.vertex_place = list.vertex_place;
-  arguments.fold_place = list.fold_place;
+  arguments.path = list.path;
   arguments.needs_load = list.needs_load.data();
   arguments.folded = &list.folded;
   arguments.flushed = &list.flushed;
   context_.machine.run(context_.kernels.list, arguments, LaneMask::first(list.entries));
+  list.any_folded = context_.machine.count(list.folded) > 0;
+  list.any_flushed = context_.machine.count(list.flushed) > 0;
   list.loads = 0;
   for (const LaneMask& needed : list.needs_load) {
     if (context_.machine.count(needed) == 0) break;
@@ -56,8 +60,7 @@ RadianceStage::FoldStage::FoldStage(const StageContext& context, std::vector<Lis
 
 RadianceStage::FoldStage::Loads RadianceStage::FoldStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
-  return {cutter.take<FinishedRecord>(), cutter.take<FoldRecord>(),
-          cutter.take<VertexRecord>(kVerticesPerLoad)};
+  return {cutter.take<FoldRecord>(), cutter.take<VertexRecord>(kVerticesPerLoad)};
 }
 
 RadianceStage::FoldStage::Saves RadianceStage::FoldStage::saves(std::uint64_t step) const {
@@ -66,32 +69,31 @@ RadianceStage::FoldStage::Saves RadianceStage::FoldStage::saves(std::uint64_t st
 }
 
 void RadianceStage::FoldStage::load(std::uint64_t step, int block) {
-  context_.saves.wait_until(context_.bins.last_path_step);
   const Loads to = loads(step);
   const ListBlock& list = list_block(block);
   const int load = load_of(block);
-  const LaneMask entries = LaneMask::first(list.entries);
-  const cn::MonoPlaces list_places = block_of(context_.layout.finished, list_index(block));
-  context_.loads.copy_m2p(step, block, to.entry.span(), list_places, entries);
-  if (load == 0)
-    context_.loads.copy_m2p(step, block, to.earlier.span(), context_.machine.places_in(list.fold_place),
+  if (is_last(block))
+    context_.loads.copy_m2p(step, block, to.earlier.span(), context_.machine.places_in(list.path.fold_place),
                             list.folded);
   constexpr int kBytes = kVerticesPerLoad * static_cast<int>(sizeof(VertexRecord));
   context_.loads.copy_m2p(step, block, {to.vertices.span().offset_bytes, kBytes},
-                          context_.machine.places_in(list.vertex_place, std::uint64_t(load) * kBytes),
+                          context_.machine.places_in(list.path.vertex_place, std::uint64_t(load) * kBytes),
                           list.needs_load[std::size_t(load)]);
 }
 
 void RadianceStage::FoldStage::process(std::uint64_t step, int block) {
   const Loads from = loads(step);
+  const Saves to = saves(step);
   const ListBlock& list = list_block(block);
   FoldArguments arguments;
-  arguments.entry = from.entry;
+  arguments.path = list.path;
   arguments.vertices = from.vertices;
+  arguments.first_vertex = load_of(block) * kVerticesPerLoad;
+  arguments.starts = is_first(block);
+  arguments.any_flushed = list.any_flushed;
+  arguments.folded = list.any_folded ? &list.folded : nullptr;
   arguments.earlier = from.earlier;
   arguments.sum = PolyPointer<FoldRecord>(sum_);
-  arguments.first_vertex = load_of(block) * kVerticesPerLoad;
-  const Saves to = saves(step);
   arguments.radiance = to.radiance;
   arguments.flushed = to.flushed;
   context_.machine.run(context_.kernels.fold, arguments, LaneMask::first(list.entries));
@@ -103,7 +105,7 @@ void RadianceStage::FoldStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   context_.saves.copy_p2m(step, block, block_of(results_, list_index(block)), from.radiance.span(),
                           LaneMask::first(list.entries));
-  context_.saves.copy_p2m(step, block, context_.machine.places_in(list.fold_place), from.flushed.span(),
+  context_.saves.copy_p2m(step, block, context_.machine.places_in(list.path.fold_place), from.flushed.span(),
                           list.flushed);
 }
 

@@ -5,7 +5,7 @@ namespace path_tracer {
 void RayStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const PolyPointer<RayRecord> ray(context_.loads.buffer(step));
-  load_block(step, block, ray, context_.layout.ray_bin, bin_block(block).live);
+  load_block(step, block, ray, context_.layout.ray_bin, present(block));
 }
 
 void RayStage::process(std::uint64_t step, int block) {
@@ -20,13 +20,19 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.hit = PolyPointer<HitRecord>(context_.saves.buffer(step));
   arguments.surface_place = bin.surface_place;
   arguments.hit_something = &bin.hit_something;
-  context_.machine.run(context_.kernels.intersect, arguments, bin.live);
-  context_.counts.segments += std::uint64_t(bin.live_count);
+  context_.machine.run(context_.kernels.intersect, arguments, present(block));
+  if (rays_ == Rays::segments) {
+    context_.counts.segments += std::uint64_t(bin.live_count);
+  } else {
+    context_.counts.shadow_rays += std::uint64_t(bin.wants_light.count());
+  }
 }
 
+/// Of a shadow ray only the surface that it hit is of interest, and that is kept in poly memory.
 void RayStage::save(std::uint64_t step, int block) {
+  if (rays_ == Rays::shadow_rays) return;
   const PolyPointer<HitRecord> hit(context_.saves.buffer(step));
-  save_block(step, block, context_.layout.intersection_bin, hit, bin_block(block).live);
+  save_block(step, block, context_.layout.intersection_bin, hit, present(block));
 }
 
 }  // namespace path_tracer

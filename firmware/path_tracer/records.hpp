@@ -47,12 +47,12 @@ struct LightRecord {
   vec3<double> edge1{};
   vec3<double> edge2{};
   vec3<double> normal{};
-  vec3<double> emission_over_pdf{};  ///< emission / (probability of this light / its area)
+  double inverse_pdf = 0;  ///< area / probability of this light
   std::int32_t face = kNoFace;
   std::int32_t unused = 0;
 };
 
-/// Ray bin.
+/// Ray bin: the next segment of each path, and in its turn the shadow ray of each segment.
 struct RayRecord {
   vec3<double> origin{};
   vec3<double> direction{};
@@ -77,8 +77,8 @@ struct ScatterRecord {
   std::int32_t ended = 0;
 };
 
-/// Intersection stage to shadow stage.
-struct ShadowRecord {
+/// Intersection stage to light stage: what direct lighting needs to know of the vertex.
+struct ShadingRecord {
   vec3<double> position{};
   vec3<double> normal{};  ///< on the side that the path arrived from
   vec3<double> reflectance_over_pi{};
@@ -88,7 +88,14 @@ struct ShadowRecord {
   std::int32_t unused = 0;
 };
 
-/// Shadow stage to path bin.
+/// Light stage to lighting stage: what becomes of the light that the shadow ray finds.
+struct LightingRecord {
+  vec3<double> weight{};              ///< factor for the radiance of the light's face
+  std::int32_t light_face = kNoFace;  ///< what the shadow ray must hit
+  std::int32_t unused = 0;
+};
+
+/// Lighting stage to path bin.
 struct DirectLightRecord {
   vec3<double> radiance{};
 };

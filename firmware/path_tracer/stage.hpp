@@ -46,11 +46,13 @@ class BufferCutter {
     offset_bytes_ += count * PolyPointer<Record>::size_bytes();
     return start;
   }
-  PolyField<MonoAddress> take_place() {
-    const PolyField<MonoAddress> place{offset_bytes_};
-    offset_bytes_ += static_cast<int>(sizeof(MonoAddress));
-    return place;
+  template <class T>
+  PolyField<T> take_field() {
+    const PolyField<T> field{offset_bytes_};
+    offset_bytes_ += static_cast<int>(sizeof(T));
+    return field;
   }
+  PolyField<MonoAddress> take_place() { return take_field<MonoAddress>(); }
 
  private:
   int offset_bytes_;

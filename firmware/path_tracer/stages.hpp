@@ -2,19 +2,29 @@
 
 #include "firmware/path_tracer/stage.hpp"
 
-/// The bins of the circular buffer (paper, figure 1) and the shadow rays of direct lighting.
+/// The bins of the circular buffer (paper, figure 1); with direct lighting it goes round twice a segment.
 namespace path_tracer {
 
-/// Ray bin: intersects each ray with the scene.
+/// Ray bin: intersects each ray with the scene. Once a pass for the paths' segments and, with direct
+/// lighting, once for their shadow rays, which are rays like any other.
 class RayStage : public Stage {
  public:
-  using Stage::Stage;
+  enum class Rays : std::uint8_t { segments, shadow_rays };
+
+  RayStage(const StageContext& context, Rays rays) : Stage(context), rays_(rays) {}
   static constexpr int kLoadBytes = sizeof(RayRecord);
   static constexpr int kSaveBytes = sizeof(HitRecord);
 
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
+
+ private:
+  const LaneMask& present(int block) const {
+    return rays_ == Rays::segments ? bin_block(block).live : bin_block(block).wants_light;
+  }
+
+  Rays rays_;
 };
 
 /// Intersection bin: shading details, new direction, roulette, and which light to ask.
@@ -22,7 +32,7 @@ class IntersectionStage : public Stage {
  public:
   using Stage::Stage;
   static constexpr int kLoadBytes = sizeof(HitRecord) + sizeof(SurfaceRecord) + sizeof(PathRecord);
-  static constexpr int kSaveBytes = sizeof(ScatterRecord) + sizeof(ShadowRecord);
+  static constexpr int kSaveBytes = sizeof(ScatterRecord) + sizeof(ShadingRecord);
 
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
@@ -36,17 +46,41 @@ class IntersectionStage : public Stage {
   };
   struct Saves {
     PolyPointer<ScatterRecord> scatter;
-    PolyPointer<ShadowRecord> shadow;
+    PolyPointer<ShadingRecord> shading;
   };
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;
 };
 
-/// One shadow ray a segment.
-class ShadowStage : public Stage {
+/// One shadow ray a segment, towards a point of a light.
+class LightStage : public Stage {
  public:
   using Stage::Stage;
-  static constexpr int kLoadBytes = sizeof(ShadowRecord) + sizeof(LightRecord);
+  static constexpr int kLoadBytes = sizeof(ShadingRecord) + sizeof(LightRecord);
+  static constexpr int kSaveBytes = sizeof(RayRecord) + sizeof(LightingRecord);
+
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int block) override;
+
+ private:
+  struct Loads {
+    PolyPointer<ShadingRecord> shading;
+    PolyPointer<LightRecord> light;
+  };
+  struct Saves {
+    PolyPointer<RayRecord> ray;
+    PolyPointer<LightingRecord> lighting;
+  };
+  Loads loads(std::uint64_t step) const;
+  Saves saves(std::uint64_t step) const;
+};
+
+/// What the shadow rays found.
+class LightingStage : public Stage {
+ public:
+  using Stage::Stage;
+  static constexpr int kLoadBytes = sizeof(SurfaceRecord) + sizeof(LightingRecord);
   static constexpr int kSaveBytes = sizeof(DirectLightRecord);
 
   void load(std::uint64_t step, int block) override;
@@ -55,8 +89,8 @@ class ShadowStage : public Stage {
 
  private:
   struct Loads {
-    PolyPointer<ShadowRecord> shadow;
-    PolyPointer<LightRecord> light;
+    PolyPointer<SurfaceRecord> surface;
+    PolyPointer<LightingRecord> lighting;
   };
   Loads loads(std::uint64_t step) const;
 };
@@ -132,23 +166,24 @@ class PathStage : public Stage {
   int finished_count_ = 0;
 };
 
-/// Radiance of the paths that the path stage listed, vertex by vertex (paper, section 3.1). Its blocks are
-/// blocks of the list; each takes one list step and then as many fold steps as its longest path needs.
+/// Radiance of the paths that the path stage listed, vertex by vertex from the last to the first (paper,
+/// section 3.1: "the normal path tracing recursive algorithm"). Its blocks are blocks of the list; each takes
+/// one list step and then as many fold steps as its longest path needs.
 class RadianceStage {
  public:
   explicit RadianceStage(const StageContext& context);
-  static constexpr int kLoadBytes =
-      sizeof(FinishedRecord) + sizeof(FoldRecord) + kVerticesPerLoad * sizeof(VertexRecord);
+  static constexpr int kLoadBytes = sizeof(FoldRecord) + kVerticesPerLoad * sizeof(VertexRecord);
   static constexpr int kSaveBytes = sizeof(RadianceRecord) + sizeof(FoldRecord);
 
   /// What is known of a block of the list after its list step.
   struct ListBlock {
     int entries = 0;
-    PolyField<MonoAddress> vertex_place;
-    PolyField<MonoAddress> fold_place;
+    FinishedPath path;
     std::vector<LaneMask> needs_load;
     LaneMask folded;
     LaneMask flushed;
+    bool any_folded = false;
+    bool any_flushed = false;
     int loads = 0;
   };
 
@@ -176,7 +211,6 @@ class RadianceStage {
 
    private:
     struct Loads {
-      PolyPointer<FinishedRecord> entry;
       PolyPointer<FoldRecord> earlier;
       PolyPointer<VertexRecord> vertices;
     };
@@ -186,7 +220,8 @@ class RadianceStage {
     };
     Loads loads(std::uint64_t step) const;
     Saves saves(std::uint64_t step) const;
-    bool is_last(int block) const { return load_of(block) + 1 == list_block(block).loads; }
+    bool is_first(int block) const { return load_of(block) + 1 == list_block(block).loads; }
+    bool is_last(int block) const { return load_of(block) == 0; }
     int load_of(int block) const { return block % loads_per_path_; }
     int list_index(int block) const { return block / loads_per_path_; }
     ListBlock& list_block(int block) const { return blocks_[std::size_t(list_index(block))]; }

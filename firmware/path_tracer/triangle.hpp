@@ -60,18 +60,4 @@ inline Nearest nearest_triangle(const Point3& origin, const Direction3& directio
   return nearest;
 }
 
-/// Whether something lies between the origin and origin + direction, other than the two faces at the ends.
-inline mask is_blocked(const Point3& origin, const Direction3& direction, const poly<std::int32_t>& left_face,
-                       const poly<std::int32_t>& reached_face, const TriangleRecord* triangles,
-                       int triangle_count) {
-  poly<std::int32_t> blocked = 0;
-  for (int i = 0; i < triangle_count; ++i) {
-    const Crossing crossing = cross_triangle(origin, direction, triangles[i]);
-    const mask between = crossing.inside & (crossing.distance < crossing.size);
-    cn::poly_if(between & (left_face != triangles[i].face) & (reached_face != triangles[i].face),
-                [&] { blocked = 1; });
-  }
-  return blocked != 0;
-}
-
 }  // namespace path_tracer

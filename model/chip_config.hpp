@@ -29,8 +29,9 @@ struct ChipConfig {
   struct Control {
     int data_cache_bytes;
     int cache_line_bytes;
-    int cache_miss_cycles;  ///< in the control unit, on top of what the memory takes
-    int semaphore_cycles;   ///< a signal or an unblocked wait
+    int cache_miss_cycles;     ///< in the control unit, on top of what the memory takes
+    int semaphore_cycles;      ///< a signal or an unblocked wait
+    int transfer_call_cycles;  ///< software that starts an asynchronous copy
   } control;
 
   struct Pio {

@@ -13,6 +13,7 @@ enum class CycleCause : std::uint8_t {
   mono,            ///< instructions of its own outside kernels
   data_cache,      ///< waiting for a line of mono memory
   semaphore,       ///< signals and waits that did not block
+  transfer_call,   ///< software that starts asynchronous copies
   wait_load,       ///< blocked on a semaphore of a mono-to-poly transfer
   wait_save,       ///< blocked on a semaphore of a poly-to-mono transfer
   wait_pio_queue,  ///< blocked because the PIO queue was full

@@ -122,6 +122,7 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
     mono_window_.move(transfer, *mono_socket.operator->());
     return;
   }
+  spend(CycleCause::transfer_call, Cycles(config_.control.transfer_call_cycles));
   waits_for_save_[std::size_t(transfer.done.index)] = transfer.direction == cn::Direction::poly_to_mono;
   const Cycles go_on = pio->enqueue(transfer, now_);
   spend(CycleCause::wait_pio_queue, go_on - now_);

@@ -183,6 +183,11 @@ void declare_control(Parameters& table) {
   table.push_back(integer<group, &Control::semaphore_cycles>(
       "control.semaphore_cycles", "cycles", 4, {0, kMaxCycles}, assumed,
       "signal, or wait that does not block; taken as a taken branch [reference, section 1]"));
+  table.push_back(integer<group, &Control::transfer_call_cycles>(
+      "control.transfer_call_cycles", "cycles", 20, {0, kMaxCycles}, assumed,
+      "software that starts an asynchronous copy, before the engine sees it; that send and receive overhead "
+      "limits "
+      "small transfers is measured [S13], the cycles are not"));
 }
 
 void declare_pio(Parameters& table) {

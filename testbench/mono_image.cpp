@@ -83,8 +83,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces) {
     record.vertex = to_record(triangle.vertex[0]);
     record.edge1 = to_record(triangle.vertex[1] - triangle.vertex[0]);
     record.edge2 = to_record(triangle.vertex[2] - triangle.vertex[0]);
-    record.normal = to_record(glm::normalize(twice_area));
-    record.inverse_pdf = 1.0 / pdf;
+    record.normal_over_pdf = to_record(glm::normalize(twice_area) / pdf);
     record.face = faces[i];
     lights.records.push_back(record);
     power_so_far += power;

@@ -44,6 +44,19 @@ class LaneMask {
   }
   bool any() const { return count() != 0; }
 
+  LaneMask with(const LaneMask& other) const {
+    LaneMask both;
+    for (std::size_t i = 0; i < strips_.size(); ++i)
+      both.strips_[i] = static_cast<std::uint8_t>(strips_[i] | other.strips_[i]);
+    return both;
+  }
+  LaneMask without(const LaneMask& other) const {
+    LaneMask rest;
+    for (std::size_t i = 0; i < strips_.size(); ++i)
+      rest.strips_[i] = static_cast<std::uint8_t>(strips_[i] & ~other.strips_[i]);
+    return rest;
+  }
+
   bool operator==(const LaneMask& other) const { return strips_ == other.strips_; }
 
  private:

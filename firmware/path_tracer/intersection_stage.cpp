@@ -1,61 +1,101 @@
+#include <algorithm>
+
 #include "firmware/path_tracer/stages.hpp"
 
 namespace path_tracer {
 
+int IntersectionStage::load_bytes(Program program) {
+  const int bytes = sizeof(HitRecord) + sizeof(SurfaceRecord) + sizeof(PathRecord);
+  return program == Program::segments ? bytes : bytes + int{sizeof(LightRecord)};
+}
+
+int IntersectionStage::save_bytes(Program program) {
+  const int bytes = sizeof(ScatterRecord);
+  return program == Program::segments ? bytes : bytes + int{sizeof(RayRecord) + sizeof(LightingRecord)};
+}
+
 IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
-  return {cutter.take<HitRecord>(), cutter.take<SurfaceRecord>(), cutter.take<PathRecord>()};
+  Loads loads;
+  loads.hit = cutter.take<HitRecord>();
+  loads.surface = cutter.take<SurfaceRecord>();
+  BufferCutter same_place(cutter);
+  loads.path = cutter.take<PathRecord>();
+  loads.light = cutter.take<LightRecord>();
+  loads.lighting = same_place.take<LightingRecord>();
+  return loads;
 }
 
 IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  const auto scatter = cutter.take<ScatterRecord>();
-  if (context_.config.program == Program::segments) return {scatter, {}};
-  return {scatter, cutter.take<ShadingRecord>()};
+  BufferCutter same_place(cutter);
+  Saves saves;
+  saves.scatter = cutter.take<ScatterRecord>();
+  saves.shadow_ray = cutter.take<RayRecord>();
+  saves.lighting = cutter.take<LightingRecord>();
+  saves.direct_light = same_place.take<DirectLightRecord>();
+  return saves;
 }
 
 void IntersectionStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
+  const LaneMask segments = bin.live.without(bin.shadow);
   load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live);
   context_.loads.copy_m2p(step, block, to.surface.span(), context_.machine.places_in(bin.surface_place),
                           bin.hit_something);
-  load_block(step, block, to.path, context_.layout.path_bin, bin.live);
+  load_block(step, block, to.path, context_.layout.path_bin, segments);
+  if (context_.config.program == Program::segments) return;
+  context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),
+                          segments);
+  load_block(step, block, to.lighting, context_.layout.lighting_bin, bin.shadow);
 }
 
 void IntersectionStage::process(std::uint64_t step, int block) {
-  Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
   const Saves to = saves(step);
-  bin.wants_light = LaneMask{};
+  scatter(from, to, block);
+  if (context_.config.program != Program::segments) illuminate(from, to, block);
+}
+
+void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
+  Bins::Block& bin = bin_block(block);
+  bin.casts = LaneMask{};
   ScatterArguments arguments;
   arguments.hit = from.hit;
   arguments.surface = from.surface;
   arguments.path = from.path;
+  arguments.light = from.light;
   arguments.seed = context_.config.seed;
   arguments.roulette_start = context_.config.roulette_start;
   arguments.max_survival = context_.config.max_survival;
-  arguments.light_by_shadow_rays = context_.config.program != Program::segments;
-  if (arguments.light_by_shadow_rays) {
-    arguments.light_count = context_.layout.light_count;
-    arguments.light_cdf =
-        context_.machine.read_mono(context_.layout.light_cdf, std::size_t(arguments.light_count));
-    arguments.lights = context_.layout.lights.address;
-    arguments.light_place = bin.light_place;
-  }
+  arguments.casts_shadow_rays = context_.config.program != Program::segments;
+  arguments.cull_shadow_rays = context_.config.cull_shadow_rays;
   arguments.scatter = to.scatter;
-  arguments.shading = to.shading;
-  arguments.wants_light = &bin.wants_light;
-  context_.machine.run(context_.kernels.scatter, arguments, bin.live);
+  arguments.shadow_ray = to.shadow_ray;
+  arguments.lighting = to.lighting;
+  arguments.casts = &bin.casts;
+  context_.machine.run(context_.kernels.scatter, arguments, bin.live.without(bin.shadow));
+}
+
+void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block) {
+  IlluminateArguments arguments;
+  arguments.hit = from.hit;
+  arguments.surface = from.surface;
+  arguments.lighting = from.lighting;
+  arguments.direct_light = to.direct_light;
+  context_.machine.run(context_.kernels.illuminate, arguments, bin_block(block).shadow);
 }
 
 void IntersectionStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   const Bins::Block& bin = bin_block(block);
-  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.live);
-  if (context_.config.program != Program::segments)
-    save_block(step, block, context_.layout.shading_bin, from.shading, bin.wants_light);
+  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.live.without(bin.shadow));
+  if (context_.config.program == Program::segments) return;
+  save_block(step, block, context_.layout.ray_bin, from.shadow_ray, bin.casts);
+  save_block(step, block, context_.layout.lighting_bin, from.lighting, bin.casts);
+  save_block(step, block, context_.layout.direct_light_bin, from.direct_light, bin.shadow);
 }
 
 }  // namespace path_tracer

@@ -37,75 +37,73 @@ poly<double> largest(const vec3<poly<double>>& v) {
   return cn::max(v.x, cn::max(v.y, v.z));
 }
 
+struct Surface {
+  Point3 position;
+  Direction3 normal;  ///< on the side that the ray arrived from
+  vec3<poly<double>> reflectance;
+};
+
+/// A shadow ray from `surface`, and what its answer will be worth; `wants_light` says where there can be one.
+void aim(const ScatterArguments& arguments, const Surface& surface, const mask& wants_light) {
+  const PolyPointer<LightRecord>& light = arguments.light;
+  const Point3 on_light = sample_triangle(
+      light.get(&LightRecord::vertex), light.get(&LightRecord::edge1), light.get(&LightRecord::edge2),
+      arguments.path.get(&PathRecord::light_u), arguments.path.get(&PathRecord::light_v));
+  const Direction3 to_light = on_light - surface.position;
+  // Both cosines are scaled by the distance, that at the light by 1 / pdf, too.
+  const poly<double> cosine_here = dot(to_light, surface.normal);
+  const poly<double> cosine_there = -dot(to_light, light.get(&LightRecord::normal_over_pdf));
+  const mask facing = (cosine_here > 0.0) & (cosine_there > 0.0);
+  const poly<double> distance_squared = dot(to_light, to_light);
+  const poly<double> geometry = cosine_here * cosine_there / (distance_squared * distance_squared);
+  const poly<double> scale = cn::select(facing, geometry, poly<double>(0.0)) * (1.0 / kPi);
+  arguments.shadow_ray.set(&RayRecord::origin, surface.position);
+  arguments.shadow_ray.set(&RayRecord::direction, to_light);
+  arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
+  arguments.lighting.set(&LightingRecord::weight, surface.reflectance * scale);
+  arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
+  cn::keep(arguments.cull_shadow_rays ? wants_light & facing : wants_light, *arguments.casts);
+}
+
 void scatter(const ScatterArguments& arguments) {
   const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
   const mask front = arguments.hit.get(&HitRecord::front) != 0;
-  const poly<std::int32_t> pixel = arguments.path.get(&PathRecord::pixel);
-  const poly<std::int32_t> sample = arguments.path.get(&PathRecord::sample);
   const poly<std::int32_t> depth = arguments.path.get(&PathRecord::depth);
-  const vec3<poly<double>> reflectance = arguments.surface.get(&SurfaceRecord::reflectance);
   const Direction3 surface_normal = arguments.surface.get(&SurfaceRecord::normal);
-  const Direction3 normal = cn::select(front, surface_normal, surface_normal * -1.0);
-  const Point3 position = arguments.hit.get(&HitRecord::position);
-  const Uniform4 random = uniform4(arguments.seed, pixel, sample, depth, Purpose::scatter);
+  const Surface surface{arguments.hit.get(&HitRecord::position),
+                        cn::select(front, surface_normal, surface_normal * -1.0),
+                        arguments.surface.get(&SurfaceRecord::reflectance)};
+  const poly<double> albedo = largest(surface.reflectance);
+  const Uniform4 random = uniform4(arguments.seed, arguments.path.get(&PathRecord::pixel),
+                                   arguments.path.get(&PathRecord::sample), depth, Purpose::scatter);
 
   // Russian roulette on the surface alone: the path before it need not be loaded.
   const mask safe = depth < arguments.roulette_start;
-  const poly<double> survival = cn::select(
-      safe, poly<double>(1.0), cn::min(largest(reflectance), poly<double>(arguments.max_survival)));
-  const mask goes_on = hit & (random.value[2] < survival) & (largest(reflectance) > 0.0);
+  const poly<double> survival =
+      cn::select(safe, poly<double>(1.0), cn::min(albedo, poly<double>(arguments.max_survival)));
+  const mask reflects = hit & (albedo > 0.0);
+  const mask goes_on = reflects & (random.value[2] < survival);
   const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
 
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
-  const mask emits = hit & front & (arguments.light_by_shadow_rays ? depth == 0 : depth >= 0);
-  arguments.scatter.set(&ScatterRecord::position, position);
-  arguments.scatter.set(&ScatterRecord::direction, sample_cosine(normal, random.value[0], random.value[1]));
+  const mask emits = hit & front & (arguments.casts_shadow_rays ? depth == 0 : depth >= 0);
+  arguments.scatter.set(&ScatterRecord::position, surface.position);
+  arguments.scatter.set(&ScatterRecord::direction,
+                        sample_cosine(surface.normal, random.value[0], random.value[1]));
   arguments.scatter.set(&ScatterRecord::radiance,
                         cn::select(emits, arguments.surface.get(&SurfaceRecord::emission), none));
-  arguments.scatter.set(&ScatterRecord::weight, cn::select(goes_on, reflectance * inverse_survival, none));
-  const poly<std::int32_t> face = arguments.surface.get(&SurfaceRecord::face);
-  arguments.scatter.set(&ScatterRecord::face, face);
+  arguments.scatter.set(&ScatterRecord::weight,
+                        cn::select(goes_on, surface.reflectance * inverse_survival, none));
+  arguments.scatter.set(&ScatterRecord::face, arguments.surface.get(&SurfaceRecord::face));
   arguments.scatter.set(&ScatterRecord::ended,
                         cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
-  if (!arguments.light_by_shadow_rays) return;
-
-  const Uniform4 on_light = uniform4(arguments.seed, pixel, sample, depth, Purpose::light);
-  const poly<std::int32_t> light = sample_cdf(arguments.light_cdf, arguments.light_count, random.value[3]);
-  arguments.light_place.write(place_of(arguments.lights, light, sizeof(LightRecord)));
-  arguments.shading.set(&ShadingRecord::position, position);
-  arguments.shading.set(&ShadingRecord::normal, normal);
-  arguments.shading.set(&ShadingRecord::reflectance_over_pi, reflectance * (1.0 / kPi));
-  arguments.shading.set(&ShadingRecord::light_u, on_light.value[0]);
-  arguments.shading.set(&ShadingRecord::light_v, on_light.value[1]);
-  arguments.shading.set(&ShadingRecord::face, face);
-  cn::keep(hit & (largest(reflectance) > 0.0), *arguments.wants_light);
-}
-
-void aim(const AimArguments& arguments) {
-  const Point3 position = arguments.shading.get(&ShadingRecord::position);
-  const Point3 on_light = sample_triangle(
-      arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
-      arguments.light.get(&LightRecord::edge2), arguments.shading.get(&ShadingRecord::light_u),
-      arguments.shading.get(&ShadingRecord::light_v));
-  const Direction3 to_light = on_light - position;
-  // Both cosines are scaled by the distance.
-  const poly<double> cosine_here = dot(to_light, arguments.shading.get(&ShadingRecord::normal));
-  const poly<double> cosine_there = -dot(to_light, arguments.light.get(&LightRecord::normal));
-  const poly<double> distance_squared = dot(to_light, to_light);
-  const poly<double> geometry = cosine_here * cosine_there / (distance_squared * distance_squared);
-  arguments.ray.set(&RayRecord::origin, position);
-  arguments.ray.set(&RayRecord::direction, to_light);
-  arguments.ray.set(&RayRecord::left_face, arguments.shading.get(&ShadingRecord::face));
-  arguments.lighting.set(&LightingRecord::weight,
-                         arguments.shading.get(&ShadingRecord::reflectance_over_pi) *
-                             (geometry * arguments.light.get(&LightRecord::inverse_pdf)));
-  arguments.lighting.set(&LightingRecord::light_face, arguments.light.get(&LightRecord::face));
-  cn::keep((cosine_here > 0.0) & (cosine_there > 0.0), *arguments.can_see);
+  if (arguments.casts_shadow_rays) aim(arguments, surface, reflects);
 }
 
 void illuminate(const IlluminateArguments& arguments) {
   const mask sees =
-      arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face);
+      (arguments.hit.get(&HitRecord::hit) != 0) &
+      (arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face));
   const vec3<poly<double>> light =
       arguments.surface.get(&SurfaceRecord::emission) * arguments.lighting.get(&LightingRecord::weight);
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
@@ -173,12 +171,26 @@ void continue_path(const ReplaceArguments& arguments) {
   arguments.next_path.set(&PathRecord::folded, cn::select(flushed, poly<std::int32_t>(1), folded));
 }
 
+/// For the shadow ray of the vertex that the new ray will find; so early because the light is loaded with the
+/// vertex.
+void choose_light(const ReplaceArguments& arguments) {
+  const PolyPointer<PathRecord>& path = arguments.next_path;
+  const Uniform4 random =
+      uniform4(arguments.seed, path.get(&PathRecord::pixel), path.get(&PathRecord::sample),
+               path.get(&PathRecord::depth), Purpose::light);
+  path.set(&PathRecord::light_u, random.value[0]);
+  path.set(&PathRecord::light_v, random.value[1]);
+  const poly<std::int32_t> light = sample_cdf(arguments.light_cdf, arguments.light_count, random.value[2]);
+  arguments.light_place.write(place_of(arguments.lights, light, sizeof(LightRecord)));
+}
+
 void replace(const ReplaceArguments& arguments) {
   const mask ended = kept_mask(*arguments.ended);
   const poly<std::int32_t> number = arguments.number.read();
   const mask starts = ended & (number < arguments.remaining);
   cn::poly_if_any(starts, [&] { start_camera_path(arguments, number); });
   cn::poly_if_any(!ended, [&] { continue_path(arguments); });
+  if (arguments.light_cdf != nullptr) choose_light(arguments);
   cn::keep(starts | !ended, *arguments.live);
 }
 
@@ -214,7 +226,7 @@ void join_earlier(const FoldArguments& arguments, FoldSum& sum) {
   cn::poly_if(kept_mask(*arguments.folded), [&] {
     const vec3<poly<double>> throughput = arguments.earlier.get(&FoldRecord::throughput);
     sum.radiance = arguments.earlier.get(&FoldRecord::radiance) + throughput * sum.radiance;
-    if (arguments.any_flushed) sum.throughput = throughput * sum.throughput;
+    sum.throughput = throughput * sum.throughput;
   });
 }
 
@@ -222,7 +234,7 @@ void save_sum(const FoldArguments& arguments, const FoldSum& sum) {
   arguments.radiance.set(&RadianceRecord::radiance, sum.radiance);
   arguments.radiance.set(&RadianceRecord::pixel, arguments.path.pixel.read());
   arguments.radiance.set(&RadianceRecord::sample, arguments.path.sample.read());
-  if (!arguments.any_flushed) return;
+  if (arguments.folded == nullptr) return;
   arguments.flushed.set(&FoldRecord::radiance, sum.radiance);
   arguments.flushed.set(&FoldRecord::throughput, sum.throughput);
 }
@@ -233,7 +245,7 @@ void fold(const FoldArguments& arguments) {
   FoldSum sum{{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
   if (!arguments.starts) {
     sum.radiance = arguments.sum.get(&FoldRecord::radiance);
-    if (arguments.any_flushed) sum.throughput = arguments.sum.get(&FoldRecord::throughput);
+    if (arguments.folded != nullptr) sum.throughput = arguments.sum.get(&FoldRecord::throughput);
   }
   const poly<std::int32_t> vertices = arguments.path.vertices.read();
   for (int i = kVerticesPerLoad - 1; i >= 0; --i) {
@@ -241,12 +253,12 @@ void fold(const FoldArguments& arguments) {
       const PolyPointer<VertexRecord> vertex = arguments.vertices[i];
       const vec3<poly<double>> weight = vertex.get(&VertexRecord::weight);
       sum.radiance = vertex.get(&VertexRecord::radiance) + weight * sum.radiance;
-      if (arguments.any_flushed) sum.throughput = weight * sum.throughput;
+      if (arguments.folded != nullptr) sum.throughput = weight * sum.throughput;
     });
   }
   if (arguments.first_vertex > 0) {
     arguments.sum.set(&FoldRecord::radiance, sum.radiance);
-    if (arguments.any_flushed) arguments.sum.set(&FoldRecord::throughput, sum.throughput);
+    if (arguments.folded != nullptr) arguments.sum.set(&FoldRecord::throughput, sum.throughput);
     return;
   }
   if (arguments.folded != nullptr) join_earlier(arguments, sum);
@@ -264,7 +276,6 @@ const Kernels& PATH_TRACER_KERNELS() {
   static constexpr Kernels table{
       kernel<IntersectArguments, intersect>("intersect"),
       kernel<ScatterArguments, scatter>("scatter"),
-      kernel<AimArguments, aim>("aim"),
       kernel<IlluminateArguments, illuminate>("illuminate"),
       kernel<AppendArguments, append>("append"),
       kernel<ReplaceArguments, replace>("replace"),

@@ -13,47 +13,39 @@ using cn::MonoAddress;
 using cn::PolyField;
 using cn::PolyPointer;
 
-/// Ray stage and shadow ray stage: the nearest triangle along each ray, tested one by one.
+/// Ray stage: the nearest triangle along each ray, tested one by one.
 struct IntersectArguments {
   PolyPointer<RayRecord> ray;
   const TriangleRecord* triangles = nullptr;
   int triangle_count = 0;
   MonoAddress surfaces = 0;
   PolyPointer<HitRecord> hit;
-  PolyField<MonoAddress> surface_place;  ///< kept for the gather of the next stage
+  PolyField<MonoAddress> surface_place;  ///< kept for the intersection stage's gather
   LaneMask* hit_something = nullptr;
 };
 
-/// Intersection stage: shading details and the new direction.
+/// Intersection stage, segments: shading details, the new direction, and a shadow ray to the light chosen
+/// before.
 struct ScatterArguments {
   PolyPointer<HitRecord> hit;
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<PathRecord> path;
+  PolyPointer<LightRecord> light;
   std::uint64_t seed = 0;
   int roulette_start = 0;
   double max_survival = 0;
-  bool light_by_shadow_rays = false;  ///< then emission counts where the camera sees it only
-  const double* light_cdf = nullptr;
-  int light_count = 0;
-  MonoAddress lights = 0;
+  bool casts_shadow_rays = false;  ///< then emission counts where the camera sees it only
+  bool cull_shadow_rays = false;
   PolyPointer<ScatterRecord> scatter;
-  PolyPointer<ShadingRecord> shading;
-  PolyField<MonoAddress> light_place;  ///< kept for the light stage's gather
-  LaneMask* wants_light = nullptr;
-};
-
-/// Light stage: a shadow ray to a point of the chosen light, and what its answer will be worth.
-struct AimArguments {
-  PolyPointer<ShadingRecord> shading;
-  PolyPointer<LightRecord> light;
-  PolyPointer<RayRecord> ray;
+  PolyPointer<RayRecord> shadow_ray;
   PolyPointer<LightingRecord> lighting;
-  LaneMask* can_see = nullptr;  ///< neither the surface nor the light turns its back on the other
+  LaneMask* casts = nullptr;  ///< the slot's next ray is the shadow ray
 };
 
-/// Lighting stage: direct light, if the shadow ray reached the light.
+/// Intersection stage, shadow rays: direct light, if the light was what they hit.
 struct IlluminateArguments {
-  PolyPointer<SurfaceRecord> surface;  ///< that the shadow ray hit
+  PolyPointer<HitRecord> hit;
+  PolyPointer<SurfaceRecord> surface;
   PolyPointer<LightingRecord> lighting;
   PolyPointer<DirectLightRecord> direct_light;
 };
@@ -82,12 +74,17 @@ struct ReplaceArguments {
   const LaneMask* ended = nullptr;
   const LaneMask* finished = nullptr;
   const CameraRecord* camera = nullptr;
+  const double* light_cdf = nullptr;  ///< nothing without shadow rays
+  int light_count = 0;
+  MonoAddress lights = 0;
   std::uint64_t seed = 0;
   std::int32_t next_pixel = 0;  ///< of the camera ray with number 0
   std::int32_t next_sample = 0;
   std::int32_t remaining = 0;  ///< camera rays there still are, at most the number of PEs
   PolyPointer<PathRecord> next_path;
   PolyPointer<RayRecord> ray;
+  PolyField<MonoAddress>
+      light_place;  ///< of the light for the next vertex, kept for the intersection stage's gather
   LaneMask* live = nullptr;
 };
 
@@ -124,9 +121,10 @@ struct FoldArguments {
   FinishedPath path;
   PolyPointer<VertexRecord> vertices;
   int first_vertex = 0;
-  bool starts = false;                   ///< no vertices behind these
-  bool any_flushed = false;              ///< then the throughput is wanted, too
-  const LaneMask* folded = nullptr;      ///< in the last step: paths with vertices before these, or nothing
+  bool starts = false;  ///< no vertices behind these
+  /// Paths that were folded before; nothing when no path of the block was or goes on, so that no throughput
+  /// is wanted.
+  const LaneMask* folded = nullptr;
   PolyPointer<FoldRecord> earlier;       ///< those vertices
   PolyPointer<FoldRecord> sum;           ///< carried from step to step
   PolyPointer<RadianceRecord> radiance;  ///< written in the last step
@@ -136,7 +134,6 @@ struct FoldArguments {
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
   cn::Kernel<ScatterArguments> scatter;
-  cn::Kernel<AimArguments> aim;
   cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;
   cn::Kernel<ReplaceArguments> replace;

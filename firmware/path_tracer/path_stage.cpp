@@ -34,10 +34,11 @@ void PathStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
-  load_block(step, block, to.path, context_.layout.path_bin, bin.live);
-  load_block(step, block, to.scatter, context_.layout.scatter_bin, bin.live);
+  const LaneMask ready = bin.live.without(bin.casts);
+  load_block(step, block, to.path, context_.layout.path_bin, ready);
+  load_block(step, block, to.scatter, context_.layout.scatter_bin, ready);
   if (context_.config.program != Program::segments)
-    load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.wants_light);
+    load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.shadow);
 }
 
 void PathStage::process(std::uint64_t step, int block) {
@@ -55,14 +56,14 @@ void PathStage::append_vertices(std::uint64_t step, int block) {
   const Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
   const Saves to = saves(step);
-  appended_ = bin.live;
+  appended_ = bin.live.without(bin.casts);
   ended_ = LaneMask{};
   finished_ = LaneMask{};
   AppendArguments arguments;
   arguments.path = from.path;
   arguments.scatter = from.scatter;
   arguments.direct_light = from.direct_light;
-  arguments.has_direct_light = &bin.wants_light;
+  arguments.has_direct_light = &bin.shadow;
   arguments.slot_vertices = context_.config.slot_vertices;
   arguments.first_slot = static_cast<int>(first_slot(block));
   arguments.block_vertices =
@@ -91,7 +92,7 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   const Saves to = saves(step);
   const auto started = static_cast<std::int32_t>(
       std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
-  LaneMask live;
+  replaced_ = LaneMask{};
   ReplaceArguments arguments;
   arguments.path = from.path;
   arguments.scatter = from.scatter;
@@ -99,17 +100,25 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   arguments.ended = &ended_;
   arguments.finished = &finished_;
   arguments.camera = context_.machine.read_mono(context_.layout.camera);
+  if (context_.config.program != Program::segments) {
+    arguments.light_count = context_.layout.light_count;
+    arguments.light_cdf =
+        context_.machine.read_mono(context_.layout.light_cdf, std::size_t(arguments.light_count));
+    arguments.lights = context_.layout.lights.address;
+    arguments.light_place = bin.light_place;
+  }
   arguments.seed = context_.config.seed;
   arguments.next_pixel = camera_rays_.next_pixel();
   arguments.next_sample = camera_rays_.next_sample();
   arguments.remaining = started;
   arguments.next_path = to.path;
   arguments.ray = to.ray;
-  arguments.live = &live;
+  arguments.live = &replaced_;
   context_.machine.run(context_.kernels.replace, arguments, appended_);
   camera_rays_.issue(std::uint64_t(started));
-  bin.live = live;
-  bin.live_count = appended_.count() - ended_count + started;
+  bin.live = replaced_.with(bin.casts);
+  bin.live_count = appended_.count() - ended_count + started + bin.casts.count();
+  bin.shadow = bin.casts;
 }
 
 void PathStage::fill(std::uint64_t step, int block) {
@@ -123,16 +132,14 @@ void PathStage::fill(std::uint64_t step, int block) {
 
 void PathStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
-  const Bins::Block& bin = bin_block(block);
   if (appended_.any()) {
     context_.saves.copy_p2m(step, block, context_.machine.places_in(from.vertex_place), from.vertex.span(),
                             appended_);
     context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place),
                             from.finished.span(), finished_);
   }
-  save_block(step, block, context_.layout.path_bin, from.path, bin.live);
-  save_block(step, block, context_.layout.ray_bin, from.ray, bin.live);
-  context_.bins.last_path_step = step;
+  save_block(step, block, context_.layout.path_bin, from.path, replaced_);
+  save_block(step, block, context_.layout.ray_bin, from.ray, replaced_);
 }
 
 }  // namespace path_tracer

@@ -10,20 +10,13 @@ namespace {
 constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config) {
-  int bytes = std::max({RayStage::kLoadBytes, IntersectionStage::kLoadBytes, PathStage::kLoadBytes});
-  if (config.program != Program::segments)
-    bytes = std::max({bytes, LightStage::kLoadBytes, LightingStage::kLoadBytes});
-  if (config.program == Program::full) bytes = std::max(bytes, RadianceStage::kLoadBytes);
-  return bytes;
+  return std::max(
+      {RayStage::kLoadBytes, IntersectionStage::load_bytes(config.program), PathStage::kLoadBytes});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  int bytes = std::max({RayStage::kSaveBytes, PathStage::kSaveBytes, int{sizeof(ScatterRecord)}});
-  if (config.program != Program::segments)
-    bytes =
-        std::max({bytes, IntersectionStage::kSaveBytes, LightStage::kSaveBytes, LightingStage::kSaveBytes});
-  if (config.program == Program::full) bytes = std::max(bytes, RadianceStage::kSaveBytes);
-  return bytes;
+  return std::max(
+      {RayStage::kSaveBytes, IntersectionStage::save_bytes(config.program), PathStage::kSaveBytes});
 }
 
 const ProgramConfig& valid(const ProgramConfig& config) {
@@ -56,10 +49,10 @@ Bins make_bins(cn::Machine& machine, int blocks) {
   return bins;
 }
 
-std::unique_ptr<TransferRing> untimed_ring(cn::Machine& machine, const ProgramConfig& config,
-                                           const char* name, int bytes) {
-  if (config.program == Program::full) return nullptr;
-  return std::make_unique<TransferRing>(machine, name, 1, bytes);
+/// A block of finished paths takes about three steps and two blocks of the ray bin bring one, so that two
+/// steps between ray steps are enough.
+int radiance_buffers(const ProgramConfig& config) {
+  return config.program == Program::full && config.buffers_loads() ? 2 : 1;
 }
 
 }  // namespace
@@ -71,29 +64,36 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       config_(valid(config)),
       layout_(layout),
       bins_(make_bins(machine, config.bin_blocks)),
-      loads_(machine, "load buffer", config.load_buffers(), load_buffer_bytes(config)),
-      saves_(machine, "save buffer", config.save_buffers(), save_buffer_bytes(config)),
-      untimed_loads_(untimed_ring(machine, config, "untimed load buffer", RadianceStage::kLoadBytes)),
-      untimed_saves_(untimed_ring(machine, config, "untimed save buffer", RadianceStage::kSaveBytes)),
-      ray_stage_(context(), RayStage::Rays::segments),
-      intersection_stage_(context()),
-      light_stage_(context()),
-      shadow_ray_stage_(context(), RayStage::Rays::shadow_rays),
-      lighting_stage_(context()),
-      path_stage_(context(), work),
-      radiance_stage_({machine, kernels, config_, layout_, untimed_loads_ ? *untimed_loads_ : loads_,
-                       untimed_saves_ ? *untimed_saves_ : saves_, bins_, counts_}) {}
+      loads_(machine, "load buffer",
+             {config.load_buffers(), load_buffer_bytes(config), !config.buffers_loads()}),
+      saves_(machine, "save buffer",
+             {config.save_buffers(), save_buffer_bytes(config), !config.buffers_saves()}),
+      radiance_loads_(machine, "radiance load buffer",
+                      {radiance_buffers(config), RadianceStage::kLoadBytes, !config.buffers_loads()}),
+      radiance_saves_(machine, "radiance save buffer",
+                      {1, RadianceStage::kSaveBytes, !config.buffers_saves()}),
+      ray_stage_(context(loads_, saves_)),
+      intersection_stage_(context(loads_, saves_)),
+      path_stage_(context(loads_, saves_), work),
+      radiance_stage_(context(radiance_loads_, radiance_saves_)) {}
 
 void PathTracer::run(const Progress& progress) {
   fill_bins();
-  for (issue_loads(); !loading_.empty(); issue_loads()) {
+  while (true) {
+    issue_loads();
+    if (radiance_is_left() && (loading_.empty() || !is_ray_step(loading_.front()))) run_radiance_to_end();
+    if (loading_.empty()) break;
     if (progress && !progress(path_stage_.camera_rays().issued())) return;
-    run_step();
+    if (is_ray_step(loading_.front())) {
+      run_ray_step_with_radiance();
+    } else {
+      run_bin_step();
+    }
   }
   announce_results();
   saves_.wait_until(next_step_);
   counts_.paths = path_stage_.camera_rays().issued();
-  counts_.steps = next_step_;
+  counts_.steps = next_step_ + next_radiance_step_;
 }
 
 void PathTracer::fill_bins() {
@@ -102,7 +102,6 @@ void PathTracer::fill_bins() {
     saves_.wait(step);
     path_stage_.fill(step, block);
     path_stage_.save(step, block);
-    if (!config_.buffer_saves) saves_.wait(step);
     live_blocks_.push_back(block);
     plan(ray_stage_, block);
   }
@@ -111,88 +110,56 @@ void PathTracer::fill_bins() {
 
 /// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before.
 void PathTracer::plan_pass() {
-  const auto plan_blocks = [this](Stage& stage) {
-    for (const int block : live_blocks_) plan(stage, block);
-  };
-  plan_blocks(intersection_stage_);
-  if (config_.program != Program::segments) {
-    plan_blocks(light_stage_);
-    plan_blocks(shadow_ray_stage_);
-    plan_blocks(lighting_stage_);
-  }
-  plan_blocks(path_stage_);
+  for (const int block : live_blocks_) plan(intersection_stage_, block);
+  for (const int block : live_blocks_) plan(path_stage_, block);
   path_steps_left_ = static_cast<int>(live_blocks_.size());
   counts_.blocks += live_blocks_.size();
   if (!live_blocks_.empty()) counts_.skipped_blocks += std::size_t(config_.bin_blocks) - live_blocks_.size();
   live_blocks_.clear();
 }
 
-/// Where the next step comes from: the bins, or radiance after every ray step as long as there is some. It
-/// must be through before the pass goes on, because path steps overwrite the vertices. Nothing when that is
-/// not known yet.
-PathTracer::Steps* PathTracer::next_steps() {
-  const bool ray_step_is_next = !bin_steps_.empty() && bin_steps_.front().stage == &ray_stage_;
-  if (ray_step_is_next && (rays_before_radiance_ > 0 || radiance_steps_.empty())) return &bin_steps_;
-  if (!radiance_steps_.empty()) return &radiance_steps_;
-  return bin_steps_.empty() || list_steps_left_ > 0 ? nullptr : &bin_steps_;
-}
-
 /// A step's records come from earlier steps on the same block of the bins. Few live blocks bring the two so
-/// close that the earlier one has not run yet. Radiance steps are only planned when what they read is there.
+/// close that the earlier one has not run yet.
 bool PathTracer::can_load(const Step& step) const {
-  return is_radiance(step) || std::none_of(loading_.begin(), loading_.end(), [&](const Step& earlier) {
-           return !is_radiance(earlier) && earlier.block == step.block;
-         });
+  return std::none_of(loading_.begin(), loading_.end(),
+                      [&](const Step& earlier) { return earlier.block == step.block; });
 }
 
 void PathTracer::issue_loads() {
-  while (loading_.size() < std::size_t(config_.load_buffers())) {
-    Steps* const steps = next_steps();
-    if (steps == nullptr || !can_load(steps->front())) return;
-    Step step = steps->front();
-    steps->pop_front();
+  while (loading_.size() < std::size_t(config_.load_buffers()) && !bin_steps_.empty() &&
+         can_load(bin_steps_.front())) {
+    Step step = bin_steps_.front();
+    bin_steps_.pop_front();
     step.number = next_step_++;
     step.stage->load(step.number, step.block);
     loading_.push_back(step);
-    rays_before_radiance_ = is_radiance(step) ? 1 : rays_before_radiance_ - 1;
   }
 }
 
-void PathTracer::run_step() {
+void PathTracer::run_bin_step() {
   const Step step = loading_.front();
   loading_.pop_front();
   loads_.wait(step.number);
   saves_.wait(step.number);
   step.stage->process(step.number, step.block);
   step.stage->save(step.number, step.block);
-  if (!config_.buffer_saves) saves_.wait(step.number);
-
-  if (step.stage == &path_stage_) {
-    after_path_step(step.block);
-  } else if (step.stage == &radiance_stage_.list()) {
-    after_list_step(step.block);
-  } else if (step.stage == &radiance_stage_.fold()) {
-    last_result_step_ = step.number;
-  }
+  if (step.stage == &path_stage_) after_path_step(step);
 }
 
-void PathTracer::after_path_step(int block) {
+void PathTracer::after_path_step(const Step& step) {
   if (radiance_is_timed()) announce_results();
-  if (bins_.blocks[std::size_t(block)].live_count > 0) {
-    live_blocks_.push_back(block);
-    plan(ray_stage_, block);
+  last_path_step_ = step.number;
+  if (bins_.blocks[std::size_t(step.block)].live_count > 0) {
+    live_blocks_.push_back(step.block);
+    plan(ray_stage_, step.block);
   }
   if (--path_steps_left_ > 0) return;
-  if (radiance_is_timed()) {
-    plan_radiance_of_pass();
-  } else {
-    run_untimed_radiance();
-  }
+  plan_radiance_of_pass();
+  if (!radiance_is_timed()) run_untimed_radiance();
   path_stage_.clear_finished();
   plan_pass();
 }
 
-/// The first list step waits for the saves of the last path step; some ray steps before it hide that.
 void PathTracer::plan_radiance_of_pass() {
   results_records_ = path_stage_.finished_count();
   radiance_stage_.fold().set_results(layout_.results[results_half_]);
@@ -202,7 +169,40 @@ void PathTracer::plan_radiance_of_pass() {
     plan_radiance(radiance_stage_.list(), block);
     ++list_steps_left_;
   }
-  rays_before_radiance_ = config_.load_buffers();
+  ray_steps_before_radiance_ = 1;  // hides the saves of the last path step
+}
+
+/// The loads of radiance steps take place under the ray step, the steps themselves follow it.
+void PathTracer::run_ray_step_with_radiance() {
+  if (config_.buffers_loads() && ray_steps_before_radiance_ == 0) issue_radiance_loads();
+  if (ray_steps_before_radiance_ > 0) --ray_steps_before_radiance_;
+  run_bin_step();
+  while (!radiance_loading_.empty()) run_radiance_step();
+}
+
+void PathTracer::issue_radiance_loads() {
+  if (radiance_is_timed() && !radiance_steps_.empty()) saves_.wait_until(last_path_step_);
+  while (radiance_loading_.size() < std::size_t(radiance_buffers(config_)) && !radiance_steps_.empty()) {
+    Step step = radiance_steps_.front();
+    radiance_steps_.pop_front();
+    step.number = next_radiance_step_++;
+    step.stage->load(step.number, step.block);
+    radiance_loading_.push_back(step);
+  }
+}
+
+void PathTracer::run_radiance_step() {
+  const Step step = radiance_loading_.front();
+  radiance_loading_.pop_front();
+  radiance_loads_.wait(step.number);
+  radiance_saves_.wait(step.number);
+  step.stage->process(step.number, step.block);
+  step.stage->save(step.number, step.block);
+  if (step.stage == &radiance_stage_.list()) {
+    after_list_step(step.block);
+  } else {
+    last_result_step_ = step.number;
+  }
 }
 
 void PathTracer::after_list_step(int block) {
@@ -211,38 +211,30 @@ void PathTracer::after_list_step(int block) {
   --list_steps_left_;
 }
 
-/// Tells the host which half of the results it may read, and makes sure that the other half is free.
-void PathTracer::announce_results() {
-  if (results_records_ == 0) return;
-  saves_.wait_until(last_result_step_);
-  machine_.write_mono(layout_.results_header[results_half_], ResultsHeader{results_records_, 0});
-  machine_.sem_signal(HostSemaphores::kResultsReady);
-  results_records_ = 0;
-  results_half_ = 1 - results_half_;
-  if (++announcements_ > 1) machine_.sem_wait(HostSemaphores::kResultsFree);
+/// Before the pass goes on: its path steps overwrite the vertices.
+void PathTracer::run_radiance_to_end() {
+  while (radiance_is_left()) {
+    issue_radiance_loads();
+    run_radiance_step();
+  }
 }
 
 /// Programs that leave out radiance are timed without it, as in the paper; the image is made all the same.
 void PathTracer::run_untimed_radiance() {
   const cn::Untimed untimed(machine_);
-  const int finished = path_stage_.finished_count();
-  const int width = machine_.num_pes();
-  const auto run = [&](Stage& stage, int block) {
-    stage.load(0, block);
-    untimed_loads_->wait(0);
-    stage.process(0, block);
-    stage.save(0, block);
-    untimed_saves_->wait(0);
-  };
-  radiance_stage_.fold().set_results(layout_.results[results_half_]);
-  for (int block = 0; block * width < finished; ++block) {
-    radiance_stage_.begin_block(block, std::min(width, finished - block * width));
-    run(radiance_stage_.list(), block);
-    for (int load = radiance_stage_.loads(block) - 1; load >= 0; --load)
-      run(radiance_stage_.fold(), radiance_stage_.fold_block(block, load));
-  }
-  results_records_ = finished;
+  run_radiance_to_end();
   announce_results();
+}
+
+/// Tells the host which half of the results it may read, and makes sure that the other half is free.
+void PathTracer::announce_results() {
+  if (results_records_ == 0) return;
+  radiance_saves_.wait_until(last_result_step_);
+  machine_.write_mono(layout_.results_header[results_half_], ResultsHeader{results_records_, 0});
+  machine_.sem_signal(HostSemaphores::kResultsReady);
+  results_records_ = 0;
+  results_half_ = 1 - results_half_;
+  if (++announcements_ > 1) machine_.sem_wait(HostSemaphores::kResultsFree);
 }
 
 }  // namespace path_tracer

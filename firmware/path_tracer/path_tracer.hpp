@@ -2,7 +2,6 @@
 
 #include <deque>
 #include <functional>
-#include <memory>
 
 #include "firmware/path_tracer/stages.hpp"
 
@@ -19,10 +18,12 @@ struct HostSemaphores {
 /// The firmware's main program: binned, n-buffered path tracing (paper, section 3).
 ///
 /// A step is one stage on one block. Steps run one after the other: all blocks through the ray bin, then the
-/// intersection bin, the shadow rays and the path bin, and again until no camera ray and no path is left. The
-/// radiance of the paths that finished is computed between the ray steps of the next pass: its transfers are
-/// long and its kernels short, the ray bin's are the other way round. While step m is processed, the loads of
-/// steps m+1..m+n and the saves of steps m-1..m-n are under way, across the borders between bins.
+/// intersection bin and the path bin, and again until no camera ray and no path is left. While step m is
+/// processed, the loads of steps m+1..m+n and the saves of steps m-1..m-n are under way, across the borders
+/// between bins.
+///
+/// The radiance of the paths that finished is computed between the ray steps of the next pass, in buffers of
+/// its own: its transfers are long and its kernels short, the ray bin's are the other way round.
 class PathTracer {
  public:
   /// `machine` has the scene image of `layout` in mono memory. Throws ProgramError, cn::PolyMemoryOverflow.
@@ -46,22 +47,29 @@ class PathTracer {
 
   void plan(Stage& stage, int block) { bin_steps_.push_back({&stage, block, 0}); }
   void plan_radiance(Stage& stage, int block) { radiance_steps_.push_back({&stage, block, 0}); }
-  Steps* next_steps();
+  bool is_ray_step(const Step& step) const { return step.stage == &ray_stage_; }
   bool can_load(const Step& step) const;
-  bool is_radiance(const Step& step) const {
-    return step.stage == &radiance_stage_.list() || step.stage == &radiance_stage_.fold();
+  bool radiance_is_timed() const { return config_.program == Program::full; }
+  bool radiance_is_left() const {
+    return !radiance_steps_.empty() || !radiance_loading_.empty() || list_steps_left_ > 0;
   }
+
   void fill_bins();
   void issue_loads();
-  void run_step();
-  void after_path_step(int block);
-  void after_list_step(int block);
+  void run_bin_step();
+  void run_ray_step_with_radiance();
+  void after_path_step(const Step& step);
   void plan_pass();
   void plan_radiance_of_pass();
-  void announce_results();
+  void issue_radiance_loads();
+  void run_radiance_step();
+  void run_radiance_to_end();
   void run_untimed_radiance();
-  StageContext context() { return {machine_, kernels_, config_, layout_, loads_, saves_, bins_, counts_}; }
-  bool radiance_is_timed() const { return config_.program == Program::full; }
+  void after_list_step(int block);
+  void announce_results();
+  StageContext context(TransferRing& loads, TransferRing& saves) {
+    return {machine_, kernels_, config_, layout_, loads, saves, bins_, counts_};
+  }
 
   cn::Machine& machine_;
   const Kernels& kernels_;
@@ -71,25 +79,25 @@ class PathTracer {
   Bins bins_;
   TransferRing loads_;
   TransferRing saves_;
-  std::unique_ptr<TransferRing> untimed_loads_;
-  std::unique_ptr<TransferRing> untimed_saves_;
+  TransferRing radiance_loads_;
+  TransferRing radiance_saves_;
   RayStage ray_stage_;
   IntersectionStage intersection_stage_;
-  LightStage light_stage_;
-  RayStage shadow_ray_stage_;
-  LightingStage lighting_stage_;
   PathStage path_stage_;
   RadianceStage radiance_stage_;
 
-  Steps bin_steps_;       ///< planned, in order
-  Steps radiance_steps_;  ///< planned, to be put between ray steps
-  Steps loading_;         ///< their loads are under way or done; the front is processed next
+  Steps bin_steps_;  ///< planned, in order
+  Steps loading_;    ///< their loads are under way or done; the front is processed next
   std::uint64_t next_step_ = 0;
-  int rays_before_radiance_ = 0;  ///< ray steps still to be loaded before the next radiance step
+  std::vector<int> live_blocks_;      ///< of the pass that is being planned
+  int path_steps_left_ = 0;           ///< of the pass that runs
+  std::uint64_t last_path_step_ = 0;  ///< which saves the list of finished paths
 
-  std::vector<int> live_blocks_;  ///< of the pass that is being planned
-  int path_steps_left_ = 0;       ///< of the pass that runs
-  int list_steps_left_ = 0;       ///< of the pass before; each will plan fold steps
+  Steps radiance_steps_;
+  Steps radiance_loading_;
+  std::uint64_t next_radiance_step_ = 0;
+  int list_steps_left_ = 0;  ///< each will plan fold steps
+  int ray_steps_before_radiance_ = 0;
 
   int results_half_ = 0;
   int results_records_ = 0;  ///< finished but not yet announced

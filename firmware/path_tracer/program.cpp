@@ -59,7 +59,6 @@ Layout make_layout(int triangle_count, int light_count, int num_pes, const Progr
   layout.ray_bin = memory.take<RayRecord>(slots);
   layout.intersection_bin = memory.take<HitRecord>(slots);
   layout.scatter_bin = memory.take<ScatterRecord>(slots);
-  layout.shading_bin = memory.take<ShadingRecord>(slots);
   layout.lighting_bin = memory.take<LightingRecord>(slots);
   layout.direct_light_bin = memory.take<DirectLightRecord>(slots);
   layout.path_bin = memory.take<PathRecord>(slots);

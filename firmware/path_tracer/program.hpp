@@ -31,14 +31,17 @@ struct ProgramConfig {
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
-  int bin_blocks = 16;         ///< length of each bin in blocks of one SIMD width
-  int slot_vertices = 16;      ///< vertices a path slot holds; a multiple of kVerticesPerLoad
-  int roulette_start = 0;      ///< segments a path lives without roulette
-  double max_survival = 0.95;  ///< so that paths between white surfaces end
+  int bin_blocks = 16;           ///< length of each bin in blocks of one SIMD width
+  int slot_vertices = 16;        ///< vertices a path slot holds; a multiple of kVerticesPerLoad
+  int roulette_start = 0;        ///< segments a path lives without roulette
+  double max_survival = 0.95;    ///< so that paths between white surfaces end
+  bool cull_shadow_rays = true;  ///< none where surface or light turns its back on the other
   std::uint64_t seed = 1;
 
-  int load_buffers() const { return buffer_loads ? n + 1 : 1; }
-  int save_buffers() const { return buffer_saves ? n + 1 : 1; }
+  bool buffers_loads() const { return buffer_loads && n > 0; }
+  bool buffers_saves() const { return buffer_saves && n > 0; }
+  int load_buffers() const { return buffers_loads() ? n + 1 : 1; }
+  int save_buffers() const { return buffers_saves() ? n + 1 : 1; }
 };
 
 /// The work: samples [first_sample, first_sample + samples) of every pixel.
@@ -71,7 +74,6 @@ struct Layout {
   cn::MonoPointer<RayRecord> ray_bin;
   cn::MonoPointer<HitRecord> intersection_bin;
   cn::MonoPointer<ScatterRecord> scatter_bin;
-  cn::MonoPointer<ShadingRecord> shading_bin;
   cn::MonoPointer<LightingRecord> lighting_bin;
   cn::MonoPointer<DirectLightRecord> direct_light_bin;
   cn::MonoPointer<PathRecord> path_bin;

@@ -22,7 +22,6 @@ RadianceStage::RadianceStage(const StageContext& context)
 }
 
 void RadianceStage::ListStage::load(std::uint64_t step, int block) {
-  context_.saves.wait_until(context_.bins.last_path_step);
   const PolyPointer<FinishedRecord> entry(context_.loads.buffer(step));
   load_block(step, block, entry, context_.layout.finished,
              LaneMask::first(blocks_[std::size_t(block)].entries));
@@ -43,8 +42,7 @@ void RadianceStage::ListStage::process(std::uint64_t step, int block) {
   arguments.folded = &list.folded;
   arguments.flushed = &list.flushed;
   context_.machine.run(context_.kernels.list, arguments, LaneMask::first(list.entries));
-  list.any_folded = context_.machine.count(list.folded) > 0;
-  list.any_flushed = context_.machine.count(list.flushed) > 0;
+  list.any_partial = context_.machine.count(list.folded.with(list.flushed)) > 0;
   list.loads = 0;
   for (const LaneMask& needed : list.needs_load) {
     if (context_.machine.count(needed) == 0) break;
@@ -72,7 +70,7 @@ void RadianceStage::FoldStage::load(std::uint64_t step, int block) {
   const Loads to = loads(step);
   const ListBlock& list = list_block(block);
   const int load = load_of(block);
-  if (is_last(block))
+  if (is_last(block) && list.any_partial)
     context_.loads.copy_m2p(step, block, to.earlier.span(), context_.machine.places_in(list.path.fold_place),
                             list.folded);
   constexpr int kBytes = kVerticesPerLoad * static_cast<int>(sizeof(VertexRecord));
@@ -90,8 +88,7 @@ void RadianceStage::FoldStage::process(std::uint64_t step, int block) {
   arguments.vertices = from.vertices;
   arguments.first_vertex = load_of(block) * kVerticesPerLoad;
   arguments.starts = is_first(block);
-  arguments.any_flushed = list.any_flushed;
-  arguments.folded = list.any_folded ? &list.folded : nullptr;
+  arguments.folded = list.any_partial ? &list.folded : nullptr;
   arguments.earlier = from.earlier;
   arguments.sum = PolyPointer<FoldRecord>(sum_);
   arguments.radiance = to.radiance;
@@ -105,6 +102,7 @@ void RadianceStage::FoldStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   context_.saves.copy_p2m(step, block, block_of(results_, list_index(block)), from.radiance.span(),
                           LaneMask::first(list.entries));
+  if (!list.any_partial) return;
   context_.saves.copy_p2m(step, block, context_.machine.places_in(list.path.fold_place), from.flushed.span(),
                           list.flushed);
 }

@@ -5,7 +5,7 @@ namespace path_tracer {
 void RayStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const PolyPointer<RayRecord> ray(context_.loads.buffer(step));
-  load_block(step, block, ray, context_.layout.ray_bin, present(block));
+  load_block(step, block, ray, context_.layout.ray_bin, bin_block(block).live);
 }
 
 void RayStage::process(std::uint64_t step, int block) {
@@ -20,19 +20,15 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.hit = PolyPointer<HitRecord>(context_.saves.buffer(step));
   arguments.surface_place = bin.surface_place;
   arguments.hit_something = &bin.hit_something;
-  context_.machine.run(context_.kernels.intersect, arguments, present(block));
-  if (rays_ == Rays::segments) {
-    context_.counts.segments += std::uint64_t(bin.live_count);
-  } else {
-    context_.counts.shadow_rays += std::uint64_t(bin.wants_light.count());
-  }
+  context_.machine.run(context_.kernels.intersect, arguments, bin.live);
+  const auto shadow_rays = std::uint64_t(bin.shadow.count());
+  context_.counts.segments += std::uint64_t(bin.live_count) - shadow_rays;
+  context_.counts.shadow_rays += shadow_rays;
 }
 
-/// Of a shadow ray only the surface that it hit is of interest, and that is kept in poly memory.
 void RayStage::save(std::uint64_t step, int block) {
-  if (rays_ == Rays::shadow_rays) return;
   const PolyPointer<HitRecord> hit(context_.saves.buffer(step));
-  save_block(step, block, context_.layout.intersection_bin, hit, present(block));
+  save_block(step, block, context_.layout.intersection_bin, hit, bin_block(block).live);
 }
 
 }  // namespace path_tracer

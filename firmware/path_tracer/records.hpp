@@ -46,13 +46,13 @@ struct LightRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};
   vec3<double> edge2{};
-  vec3<double> normal{};
-  double inverse_pdf = 0;  ///< area / probability of this light
+  vec3<double> normal_over_pdf{};  ///< unit normal * area / probability of this light
   std::int32_t face = kNoFace;
   std::int32_t unused = 0;
 };
 
-/// Ray bin: the next segment of each path, and in its turn the shadow ray of each segment.
+/// Ray bin. With direct lighting a slot's ray is the next segment of its path or the shadow ray of the last
+/// one.
 struct RayRecord {
   vec3<double> origin{};
   vec3<double> direction{};
@@ -67,7 +67,7 @@ struct HitRecord {
   std::int32_t front = 0;  ///< 1 when its front was
 };
 
-/// Intersection stage to path bin: the vertex and the ray that goes on from it.
+/// Intersection bin to path bin: the vertex and the ray that goes on from it.
 struct ScatterRecord {
   vec3<double> position{};
   vec3<double> direction{};
@@ -77,25 +77,14 @@ struct ScatterRecord {
   std::int32_t ended = 0;
 };
 
-/// Intersection stage to light stage: what direct lighting needs to know of the vertex.
-struct ShadingRecord {
-  vec3<double> position{};
-  vec3<double> normal{};  ///< on the side that the path arrived from
-  vec3<double> reflectance_over_pi{};
-  double light_u = 0;
-  double light_v = 0;
-  std::int32_t face = kNoFace;
-  std::int32_t unused = 0;
-};
-
-/// Light stage to lighting stage: what becomes of the light that the shadow ray finds.
+/// Kept while a shadow ray is under way: what becomes of the light that it finds.
 struct LightingRecord {
   vec3<double> weight{};              ///< factor for the radiance of the light's face
   std::int32_t light_face = kNoFace;  ///< what the shadow ray must hit
   std::int32_t unused = 0;
 };
 
-/// Lighting stage to path bin.
+/// Intersection bin to path bin: what a shadow ray brought.
 struct DirectLightRecord {
   vec3<double> radiance{};
 };
@@ -108,6 +97,8 @@ struct PathRecord {
   std::int32_t vertices = 0;  ///< in the slot
   std::int32_t folded = 0;    ///< 1 when earlier vertices were folded into a FoldRecord
   std::int32_t unused = 0;
+  double light_u = 0;  ///< where on its light the shadow ray of the next vertex will go
+  double light_v = 0;
 };
 
 /// Path bin, slot_vertices of them a slot.

@@ -15,12 +15,12 @@ struct Bins {
     LaneMask live;  ///< slots that hold a path
     int live_count = 0;
     LaneMask hit_something;
-    LaneMask wants_light;
+    LaneMask shadow;  ///< slots whose ray is a shadow ray
+    LaneMask casts;   ///< slots whose next ray is one
     PolyField<MonoAddress> surface_place;
     PolyField<MonoAddress> light_place;
   };
   std::vector<Block> blocks;
-  std::uint64_t last_path_step = 0;  ///< the latest step that saved vertices and the list of finished paths
 };
 
 /// What every stage works with.

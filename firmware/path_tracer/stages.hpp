@@ -2,37 +2,29 @@
 
 #include "firmware/path_tracer/stage.hpp"
 
-/// The bins of the circular buffer (paper, figure 1); with direct lighting it goes round twice a segment.
+/// The bins of the circular buffer (paper, figure 1). Shadow rays go round it like segments: a slot
+/// alternates between the two, and every block is full of whichever.
 namespace path_tracer {
 
-/// Ray bin: intersects each ray with the scene. Once a pass for the paths' segments and, with direct
-/// lighting, once for their shadow rays, which are rays like any other.
+/// Ray bin: intersects each ray with the scene, a segment or a shadow ray alike.
 class RayStage : public Stage {
  public:
-  enum class Rays : std::uint8_t { segments, shadow_rays };
-
-  RayStage(const StageContext& context, Rays rays) : Stage(context), rays_(rays) {}
+  using Stage::Stage;
   static constexpr int kLoadBytes = sizeof(RayRecord);
   static constexpr int kSaveBytes = sizeof(HitRecord);
 
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
-
- private:
-  const LaneMask& present(int block) const {
-    return rays_ == Rays::segments ? bin_block(block).live : bin_block(block).wants_light;
-  }
-
-  Rays rays_;
 };
 
-/// Intersection bin: shading details, new direction, roulette, and which light to ask.
+/// Intersection bin. A segment gets its shading details, roulette, new direction and shadow ray; a shadow ray
+/// gets its light. A PE holds one or the other, so their records share SRAM.
 class IntersectionStage : public Stage {
  public:
   using Stage::Stage;
-  static constexpr int kLoadBytes = sizeof(HitRecord) + sizeof(SurfaceRecord) + sizeof(PathRecord);
-  static constexpr int kSaveBytes = sizeof(ScatterRecord) + sizeof(ShadingRecord);
+  static int load_bytes(Program program);
+  static int save_bytes(Program program);
 
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
@@ -42,57 +34,20 @@ class IntersectionStage : public Stage {
   struct Loads {
     PolyPointer<HitRecord> hit;
     PolyPointer<SurfaceRecord> surface;
-    PolyPointer<PathRecord> path;
-  };
-  struct Saves {
-    PolyPointer<ScatterRecord> scatter;
-    PolyPointer<ShadingRecord> shading;
-  };
-  Loads loads(std::uint64_t step) const;
-  Saves saves(std::uint64_t step) const;
-};
-
-/// One shadow ray a segment, towards a point of a light.
-class LightStage : public Stage {
- public:
-  using Stage::Stage;
-  static constexpr int kLoadBytes = sizeof(ShadingRecord) + sizeof(LightRecord);
-  static constexpr int kSaveBytes = sizeof(RayRecord) + sizeof(LightingRecord);
-
-  void load(std::uint64_t step, int block) override;
-  void process(std::uint64_t step, int block) override;
-  void save(std::uint64_t step, int block) override;
-
- private:
-  struct Loads {
-    PolyPointer<ShadingRecord> shading;
+    PolyPointer<PathRecord> path;  // segments
     PolyPointer<LightRecord> light;
+    PolyPointer<LightingRecord> lighting;  // shadow rays
   };
   struct Saves {
-    PolyPointer<RayRecord> ray;
+    PolyPointer<ScatterRecord> scatter;  // segments
+    PolyPointer<RayRecord> shadow_ray;
     PolyPointer<LightingRecord> lighting;
+    PolyPointer<DirectLightRecord> direct_light;  // shadow rays
   };
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;
-};
-
-/// What the shadow rays found.
-class LightingStage : public Stage {
- public:
-  using Stage::Stage;
-  static constexpr int kLoadBytes = sizeof(SurfaceRecord) + sizeof(LightingRecord);
-  static constexpr int kSaveBytes = sizeof(DirectLightRecord);
-
-  void load(std::uint64_t step, int block) override;
-  void process(std::uint64_t step, int block) override;
-  void save(std::uint64_t step, int block) override;
-
- private:
-  struct Loads {
-    PolyPointer<SurfaceRecord> surface;
-    PolyPointer<LightingRecord> lighting;
-  };
-  Loads loads(std::uint64_t step) const;
+  void scatter(const Loads& from, const Saves& to, int block);
+  void illuminate(const Loads& from, const Saves& to, int block);
 };
 
 /// The camera rays still to be issued, in the order sample by sample, pixel by pixel.
@@ -116,7 +71,8 @@ class CameraRays {
 };
 
 /// Path bin: appends the vertex and puts the next camera ray in the place of a path that ended. Lists the
-/// paths that wait for their radiance, packed by ascending numbers.
+/// paths that wait for their radiance, packed by ascending numbers. Slots whose shadow ray is still to be
+/// cast wait for it where they are.
 class PathStage : public Stage {
  public:
   PathStage(const StageContext& context, const Work& work);
@@ -163,6 +119,7 @@ class PathStage : public Stage {
   LaneMask appended_;
   LaneMask ended_;
   LaneMask finished_;
+  LaneMask replaced_;  ///< slots with a new ray
   int finished_count_ = 0;
 };
 
@@ -182,8 +139,7 @@ class RadianceStage {
     std::vector<LaneMask> needs_load;
     LaneMask folded;
     LaneMask flushed;
-    bool any_folded = false;
-    bool any_flushed = false;
+    bool any_partial = false;  ///< paths of which some vertices are elsewhere
     int loads = 0;
   };
 

@@ -10,12 +10,12 @@ constexpr std::uint64_t kEntryInstructions = 3;
 
 }  // namespace
 
-TransferRing::TransferRing(cn::Machine& machine, const std::string& name, int buffers, int bytes_per_buffer)
-    : machine_(machine) {
-  for (int i = 0; i < buffers; ++i) {
+TransferRing::TransferRing(cn::Machine& machine, const std::string& name, const Buffers& buffers)
+    : machine_(machine), synchronous_(buffers.synchronous) {
+  for (int i = 0; i < buffers.count; ++i) {
     const std::string label = name + " " + std::to_string(i);
     entries_.push_back(
-        {machine.poly_memory().allocate(label, bytes_per_buffer), machine.allocate_semaphore(label)});
+        {machine.poly_memory().allocate(label, buffers.bytes), machine.allocate_semaphore(label)});
   }
 }
 
@@ -30,12 +30,16 @@ TransferRing::Entry& TransferRing::claim(std::uint64_t step, int block) {
 
 void TransferRing::copy_m2p(std::uint64_t step, int block, cn::PolySpan destination,
                             const cn::MonoPlaces& source, const cn::LaneMask& enabled) {
-  machine_.async_copy_m2p(claim(step, block).done, destination, source, enabled);
+  Entry& claimed = claim(step, block);
+  machine_.async_copy_m2p(claimed.done, destination, source, enabled);
+  if (synchronous_) wait(claimed);
 }
 
 void TransferRing::copy_p2m(std::uint64_t step, int block, const cn::MonoPlaces& destination,
                             cn::PolySpan source, const cn::LaneMask& enabled) {
-  machine_.async_copy_p2m(claim(step, block).done, destination, source, enabled);
+  Entry& claimed = claim(step, block);
+  machine_.async_copy_p2m(claimed.done, destination, source, enabled);
+  if (synchronous_) wait(claimed);
 }
 
 void TransferRing::wait(Entry& entry) {

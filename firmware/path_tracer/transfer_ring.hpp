@@ -11,9 +11,18 @@ namespace path_tracer {
 /// n-buffering in one direction (paper, section 3.3): as many poly buffers as steps may be under way at once,
 /// taken in turn by step number, each with a semaphore that counts its finished transfers. Every bin uses the
 /// same ring, so that the last steps of a bin overlap with the first of the next.
+///
+/// A synchronous ring does without: each copy is over before the next instruction ("0-buffering simply means
+/// that each load or save operation was carried out when it occurred in the code", section 4.1).
 class TransferRing {
  public:
-  TransferRing(cn::Machine& machine, const std::string& name, int buffers, int bytes_per_buffer);
+  struct Buffers {
+    int count;
+    int bytes;
+    bool synchronous;
+  };
+
+  TransferRing(cn::Machine& machine, const std::string& name, const Buffers& buffers);
 
   cn::PolySpan buffer(std::uint64_t step) const { return entry(step).span; }
 
@@ -46,6 +55,7 @@ class TransferRing {
   void wait(Entry& entry);
 
   cn::Machine& machine_;
+  bool synchronous_;
   std::vector<Entry> entries_;
 };
 

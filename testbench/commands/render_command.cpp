@@ -28,6 +28,7 @@ struct RenderCommand {
   LevelOption level;
   std::string program = "full";
   std::string buffer = "both";
+  std::string shadow_rays = "facing";
   bool native = false;
   std::string exr;
   std::string png;
@@ -106,6 +107,7 @@ RenderRequest RenderCommand::make_request() const {
   request.options.level = level.level();
   request.options.program.buffer_loads = buffer == "both" || buffer == "loads";
   request.options.program.buffer_saves = buffer == "both" || buffer == "saves";
+  request.options.program.cull_shadow_rays = shadow_rays == "facing";
   if (!vcd.empty()) {
     if (native) throw InputError("--vcd: a native run has no clock and so no waves; leave out --native");
     WaveOptions waves;
@@ -168,6 +170,11 @@ void add_firmware_options(CLI::App& command, RenderCommand& state) {
   command.add_option("--n", program.n, "Blocks loaded ahead and saved behind, 0 to 8")->capture_default_str();
   command.add_option("--buffer", state.buffer, "What is n-buffered: loads, saves, both or none")
       ->check(CLI::IsMember({"loads", "saves", "both", "none"}))
+      ->capture_default_str();
+  command
+      .add_option("--shadow-rays", state.shadow_rays,
+                  "Cast them only where light and surface face each other, or all: facing or all")
+      ->check(CLI::IsMember({"facing", "all"}))
       ->capture_default_str();
   command.add_option("--bin-blocks", program.bin_blocks, "Length of each bin in blocks of one SIMD width")
       ->capture_default_str();

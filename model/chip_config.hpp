@@ -22,7 +22,7 @@ struct ChipConfig {
 
   struct Poly {
     int sram_bytes;
-    double code_quality_factor;  ///< cycles of a kernel = this x (instructions . cost table)
+    double code_quality_factor;  ///< cycles of code = this x (instructions . cost table)
     std::array<double, cn::kInstructionClasses> cycles;  ///< by instruction class; `sram` is per 4-byte word
   } poly;
 

@@ -1,5 +1,7 @@
 #include "model/chip_presets.hpp"
 
+#include "model/paper_constants.hpp"
+
 namespace model {
 namespace {
 
@@ -74,17 +76,15 @@ Preset g80_like() {
        {"poly.cycles.reduce", "152", kAssumed, kByMemory}}};
 }
 
-// ------------------------------------------------------------------------------------------------------
-// The paper's fitted constants: the only numbers of the model that may be fitted to the paper's Tables 1
-// and 2. At most three, fitted on at most three named cells; `why` names the cells. The others equal
-// csx600's.
+/// The paper's fitted constants: the only numbers of the model that are fitted to the paper's Tables 1 and 2,
+/// on three of the 24 cells (`csx600 calibrate`).
 std::vector<PresetOverride> paper_fitted_constants() {
-  return {{"pio.setup_cycles", "150", kAssumed, "as csx600, not fitted to the tables"},
-          {"pio.per_pe_cycles", "16", kAssumed, "as csx600, not fitted to the tables"},
-          {"poly.code_quality_factor", "11.33", kInferred,
-           "fitted to Table 1, segments, n = 1 (5.94 s): the paper's code is \"not optimised\" (section 5)"}};
+  return {{"poly.code_quality_factor", kPaperCodeQualityFactor, kInferred,
+           "fitted to segments, n = 1: the paper's code is \"not optimised\" (section 5)"},
+          {"pio.per_pe_cycles", kPaperPerPeCycles, kInferred, "fitted to segments, n = 0"},
+          {"control.transfer_call_cycles", kPaperTransferCallCycles, kInferred,
+           "fitted to direct, n = 1: software overhead of small transfers is measured [S13]"}};
 }
-// ------------------------------------------------------------------------------------------------------
 
 Preset paper() {
   Preset preset{

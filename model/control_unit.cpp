@@ -96,7 +96,8 @@ void ControlUnit::synchronise_for_observer() {
 void ControlUnit::issue_mono(std::uint64_t instructions) {
   if (!timed_) return;
   statistics_.mono_instructions += instructions;
-  const double cycles = config_.poly.cycles[std::size_t(cn::InstructionClass::mono)] * double(instructions);
+  const double cycles = config_.poly.code_quality_factor *
+                        config_.poly.cycles[std::size_t(cn::InstructionClass::mono)] * double(instructions);
   spend(CycleCause::mono, static_cast<Cycles>(cycles + 0.5));
 }
 

@@ -107,7 +107,7 @@ void declare_poly(Parameters& table) {
       "local memory of a PE [S5, S7]; the top 16 bytes are reserved by the ABI [S3]"));
   table.push_back(real<group, &Poly::code_quality_factor>(
       "poly.code_quality_factor", "-", 1, {0.01, 100}, Confidence::assumed,
-      "cycles of a kernel = this x (instructions . cost table); 1 takes the table as it is"));
+      "cycles of code, poly or mono, = this x (instructions . cost table); 1 takes the table as it is"));
 }
 
 void declare_floating_point_cycles(Parameters& table) {

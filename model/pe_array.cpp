@@ -34,7 +34,7 @@ PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
     statistics.enabled_lane_cycles += node_cycles * double(node.enabled_lanes);
   });
   const double poly = issue_cycles * code_quality_factor_;
-  const double mono = double(counts.by_class[kMono]) * cycles_[kMono];
+  const double mono = double(counts.by_class[kMono]) * cycles_[kMono] * code_quality_factor_;
   const double sram = double(counts.by_class[kSram]) * cycles_[kSram] * code_quality_factor_;
   const Cost cost{static_cast<Cycles>(std::llround(std::max(poly, mono))),
                   static_cast<Cycles>(std::llround(sram))};

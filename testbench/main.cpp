@@ -17,6 +17,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   testbench::add_render_command(app);
   testbench::add_reproduce_command(app);
+  testbench::add_calibrate_command(app);
   testbench::add_params_command(app);
   try {
     app.parse(argc, argv);

@@ -1,6 +1,16 @@
 #include "testbench/paper.hpp"
 
+#include <algorithm>
+
 namespace testbench {
+namespace {
+
+using path_tracer::Program;
+
+constexpr std::size_t kUnbufferedRow = 0;
+constexpr std::size_t kDoubleBufferedRow = 1;
+
+}  // namespace
 
 const std::vector<PaperRow>& paper_rows() {
   static const std::vector<PaperRow> rows = {
@@ -12,12 +22,48 @@ const std::vector<PaperRow>& paper_rows() {
   return rows;
 }
 
-double silicon_segments_per_second(path_tracer::Program program) {
-  constexpr std::size_t kDoubleBuffered = 1;
-  return 1e6 / paper_rows()[kDoubleBuffered].seconds[std::size_t(program)];
+std::string PaperCell::name() const {
+  return std::string(program_name(program)) + ", " + paper_rows()[row].label;
 }
 
-const char* program_name(path_tracer::Program program) {
+std::vector<PaperCell> paper_cells() {
+  std::vector<PaperCell> cells;
+  for (std::size_t row = 0; row < paper_rows().size(); ++row)
+    for (const Program program : kPaperPrograms) cells.push_back({row, program});
+  return cells;
+}
+
+std::vector<PaperCell> fitted_cells() {
+  return {{kDoubleBufferedRow, Program::segments},
+          {kUnbufferedRow, Program::segments},
+          {kDoubleBufferedRow, Program::direct}};
+}
+
+bool is_fitted(const PaperCell& cell) {
+  const PaperRow& row = paper_rows()[cell.row];
+  const std::vector<PaperCell> fitted = fitted_cells();
+  return std::any_of(fitted.begin(), fitted.end(), [&](const PaperCell& other) {
+    const PaperRow& other_row = paper_rows()[other.row];
+    const bool buffered = row.n > 0 && (row.buffer_loads || row.buffer_saves);
+    const bool other_buffered = other_row.n > 0;
+    return other.program == cell.program && buffered == other_buffered &&
+           (!buffered || (row.n == other_row.n && row.buffer_loads && row.buffer_saves));
+  });
+}
+
+path_tracer::ProgramConfig paper_program() {
+  path_tracer::ProgramConfig program;
+  program.bin_blocks = 8;
+  program.roulette_start = 8;
+  program.cull_shadow_rays = false;
+  return program;
+}
+
+double silicon_segments_per_second(Program program) {
+  return 1e6 / paper_rows()[kDoubleBufferedRow].seconds[std::size_t(program)];
+}
+
+const char* program_name(Program program) {
   static constexpr std::array<const char*, 3> kNames = {"segments", "direct", "full"};
   return kNames[std::size_t(program)];
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "firmware/path_tracer/program.hpp"
@@ -17,12 +18,38 @@ struct PaperRow {
   std::array<double, 3> seconds;  ///< segments, direct, full
 };
 
-/// The cell that the preset `paper` was fitted to (model/chip_presets.cpp); all others are predicted.
-inline constexpr int kFittedN = 1;
-inline constexpr path_tracer::Program kFittedProgram = path_tracer::Program::segments;
-
-/// Coulthurst et al. 2008, section 4.1.
+/// Coulthurst et al. 2008, section 4.1. The rows "none" and "both" of Table 2 repeat n = 0 and n = 1 of
+/// Table 1.
 const std::vector<PaperRow>& paper_rows();
+
+inline constexpr std::array<path_tracer::Program, 3> kPaperPrograms = {
+    path_tracer::Program::segments, path_tracer::Program::direct, path_tracer::Program::full};
+
+/// A number of the tables: a row and a program.
+struct PaperCell {
+  std::size_t row;
+  path_tracer::Program program;
+
+  double seconds() const { return paper_rows()[row].seconds[std::size_t(program)]; }
+  /// "segments, n = 0"
+  std::string name() const;
+};
+
+/// All 24, row by row.
+std::vector<PaperCell> paper_cells();
+
+/// The cells that the preset `paper` was fitted to (`csx600 calibrate`); all others are predicted.
+std::vector<PaperCell> fitted_cells();
+bool is_fitted(const PaperCell& cell);
+
+/// The firmware as the paper is read: one shadow ray for every segment, whichever way it goes ("a single
+/// shadow ray per path segment"). The paper states neither the length of its bins nor when roulette begins:
+/// bins of 8 blocks, and roulette late, because radiance takes below 1 % only when paths are long.
+path_tracer::ProgramConfig paper_program();
+
+/// Figure 4: 480 x 480, 1000 segments a pixel.
+inline constexpr double kPaperImageSegments = 480.0 * 480.0 * 1000.0;
+inline constexpr double kPaperImageSeconds = 3036.37;
 
 /// Path segments a second of the silicon with double buffering: the n = 1 row.
 double silicon_segments_per_second(path_tracer::Program program);

@@ -1,11 +1,30 @@
 #include "testbench/commands/command_options.hpp"
 
+#include <cstdio>
+
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
 #include "testbench/error.hpp"
 #include "testbench/render.hpp"
 
 namespace testbench {
+namespace {
+
+constexpr int kMaxFilmSide = 16384;
+
+}  // namespace
+
+FilmSize parse_film_size(const std::string& text) {
+  long long width = 0;
+  long long height = 0;
+  char end = 0;
+  const bool two_numbers = std::sscanf(text.c_str(), "%lldx%lld%c", &width, &height, &end) == 2;
+  const auto allowed = [](long long side) { return side >= 1 && side <= kMaxFilmSide; };
+  if (!two_numbers || !allowed(width) || !allowed(height))
+    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " +
+                     std::to_string(kMaxFilmSide));
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
 
 void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {
   chip_ = default_chip;

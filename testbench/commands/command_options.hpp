@@ -6,8 +6,12 @@
 
 #include "firmware/path_tracer/kernels.hpp"
 #include "model/chip_config.hpp"
+#include "testbench/scene/scene.hpp"
 
 namespace testbench {
+
+/// --size, "480x480". Throws InputError.
+FilmSize parse_film_size(const std::string& text);
 
 /// --chip and --set.
 class ChipOptions {

@@ -8,6 +8,7 @@ namespace testbench {
 /// InputError or RunError.
 void add_render_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
+void add_calibrate_command(CLI::App& app);
 void add_params_command(CLI::App& app);
 
 }  // namespace testbench

@@ -18,8 +18,6 @@
 namespace testbench {
 namespace {
 
-constexpr int kMaxFilmSide = 16384;
-
 struct RenderCommand {
   std::string scene;
   std::string size;
@@ -44,19 +42,6 @@ struct RenderCommand {
   Scene load() const;
   void write_outputs(const RenderRequest& request, const RenderResult& result) const;
 };
-
-/// "480x480".
-FilmSize parse_size(const std::string& text) {
-  long long width = 0;
-  long long height = 0;
-  char end = 0;
-  const bool two_numbers = std::sscanf(text.c_str(), "%lldx%lld%c", &width, &height, &end) == 2;
-  const auto allowed = [](long long side) { return side >= 1 && side <= kMaxFilmSide; };
-  if (!two_numbers || !allowed(width) || !allowed(height))
-    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " +
-                     std::to_string(kMaxFilmSide));
-  return {static_cast<int>(width), static_cast<int>(height)};
-}
 
 /// "first:last", either may be missing.
 void parse_cycles(const std::string& text, WaveOptions& waves) {
@@ -122,7 +107,7 @@ RenderRequest RenderCommand::make_request() const {
 
 Scene RenderCommand::load() const {
   std::optional<FilmSize> film;
-  if (!size.empty()) film = parse_size(size);
+  if (!size.empty()) film = parse_film_size(size);
   Scene loaded = load_scene(scene);
   if (film) loaded.film = *film;
   return loaded;

@@ -7,10 +7,8 @@
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/paper.hpp"
-#include "testbench/processes.hpp"
+#include "testbench/paper_runs.hpp"
 #include "testbench/progress_bar.hpp"
-#include "testbench/render.hpp"
 #include "testbench/scene/scene_file.hpp"
 
 namespace testbench {
@@ -19,13 +17,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using path_tracer::Program;
 
-constexpr Program kPrograms[] = {Program::segments, Program::direct, Program::full};
-
 struct Cell {
+  PaperCell of;
   double model_seconds = 0;  ///< for 1,000,000 path segments
-  double paper_seconds = 0;
 
-  double error_percent() const { return 100 * (model_seconds / paper_seconds - 1); }
+  double error_percent() const { return 100 * (model_seconds / of.seconds() - 1); }
 };
 
 struct ReproduceCommand {
@@ -34,53 +30,32 @@ struct ReproduceCommand {
   LevelOption level;
   int samples = 4;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool image = false;
   std::string json;
 
   void run() const;
 
  private:
+  RenderOptions make_options() const;
   std::vector<Cell> measure(const Scene& loaded, const RenderOptions& options) const;
+  void measure_image(const Scene& loaded, RenderOptions options) const;
 };
 
-/// Seconds of simulated time for 1,000,000 segments.
-double measure_cell(const Scene& scene, const RenderOptions& options) {
-  const RenderResult result = render_on_chip(scene, options);
-  return result.chip->seconds() * 1e6 / double(result.counts.segments);
-}
-
 std::vector<Cell> ReproduceCommand::measure(const Scene& loaded, const RenderOptions& options) const {
-  std::vector<std::function<std::string()>> runs;
-  for (const PaperRow& row : paper_rows()) {
-    for (const Program program : kPrograms) {
-      RenderOptions of_cell = options;
-      of_cell.program.program = program;
-      of_cell.program.n = row.n;
-      of_cell.program.buffer_loads = row.buffer_loads;
-      of_cell.program.buffer_saves = row.buffer_saves;
-      runs.emplace_back([&loaded, of_cell] { return Json(measure_cell(loaded, of_cell)).dump(); });
-    }
-  }
   ProgressBar bar("reproduce");
-  const std::vector<std::string> results =
-      run_in_processes(runs, jobs, [&](int finished) { bar.show(finished / double(runs.size())); });
+  const std::vector<double> seconds =
+      run_paper_cells(loaded, options, paper_cells(), jobs, [&](double share) { bar.show(share); });
   std::vector<Cell> cells;
-  for (std::size_t i = 0; i < results.size(); ++i)
-    cells.push_back({Json::parse(results[i]).get<double>(), paper_rows()[i / 3].seconds[i % 3]});
+  for (std::size_t i = 0; i < seconds.size(); ++i) cells.push_back({paper_cells()[i], seconds[i]});
   return cells;
-}
-
-/// Rows n = 1 of Table 1 and "both" of Table 2 are one run.
-bool is_fitted(std::size_t row, std::size_t column) {
-  const PaperRow& of = paper_rows()[row];
-  return of.n == kFittedN && of.buffer_loads && of.buffer_saves && kPrograms[column] == kFittedProgram;
 }
 
 void print_table(int table, const char* title, const std::vector<Cell>& cells) {
   std::printf("Table %d: %s, seconds for 1,000,000 path segments\n", table, title);
   std::printf("  %-8s", "");
-  for (const Program program : kPrograms) std::printf("  %-26s", program_name(program));
+  for (const Program program : kPaperPrograms) std::printf("  %-26s", program_name(program));
   std::printf("\n  %-8s", "");
-  for (std::size_t i = 0; i < std::size(kPrograms); ++i)
+  for (std::size_t i = 0; i < kPaperPrograms.size(); ++i)
     std::printf("  %7s %7s %9s ", "model", "paper", "error");
   std::printf("\n");
   for (std::size_t row = 0; row < paper_rows().size(); ++row) {
@@ -88,8 +63,8 @@ void print_table(int table, const char* title, const std::vector<Cell>& cells) {
     std::printf("  %-8s", paper_rows()[row].label);
     for (std::size_t column = 0; column < 3; ++column) {
       const Cell& cell = cells[3 * row + column];
-      std::printf("  %7.2f %7.2f %+8.1f%%%c", cell.model_seconds, cell.paper_seconds, cell.error_percent(),
-                  is_fitted(row, column) ? '*' : ' ');
+      std::printf("  %7.2f %7.2f %+8.1f%%%c", cell.model_seconds, cell.of.seconds(), cell.error_percent(),
+                  is_fitted(cell.of) ? '*' : ' ');
     }
     std::printf("\n");
   }
@@ -101,15 +76,39 @@ void print_summary(const std::vector<Cell>& cells) {
   const double full = cells[3 * kRowOfOneBuffer + 2].model_seconds;
   double worst = 0;
   double sum = 0;
+  int predicted = 0;
   for (const Cell& cell : cells) {
+    if (is_fitted(cell.of)) continue;
     worst = std::max(worst, std::abs(cell.error_percent()));
     sum += std::abs(cell.error_percent());
+    ++predicted;
   }
   std::printf("Radiance at n = 1: %.2f %% of the full computation (paper: %.2f %%)\n",
               100 * (1 - direct / full), 100 * (1 - 13.17 / 13.28));
   std::printf(
-      "Error: %.1f %% mean, %.1f %% worst of %zu cells (* the cell that preset paper was fitted to)\n",
-      sum / double(cells.size()), worst, cells.size());
+      "Error of the %d predicted cells: %.1f %% mean, %.1f %% worst (* preset paper was fitted to this "
+      "cell)\n",
+      predicted, sum / predicted, worst);
+}
+
+/// Samples that give about the paper's segments; the time is scaled to exactly as many.
+void ReproduceCommand::measure_image(const Scene& loaded, RenderOptions options) const {
+  options.work.samples = 1;
+  const RenderResult one_sample = render_natively(loaded, options);
+  options.work.samples =
+      static_cast<int>(std::lround(kPaperImageSegments / double(one_sample.counts.segments)));
+  ProgressBar bar("image");
+  const RenderResult result = render_on_chip(loaded, options, [&](double share) {
+    bar.show(share);
+    return true;
+  });
+  const double seconds = result.chip->seconds() * kPaperImageSegments / double(result.counts.segments);
+  std::printf(
+      "Image of 480 x 480 with 1000 segments a pixel: %.2f s, paper %.2f s, error %+.1f %%\n"
+      "  (%d samples a pixel, %.1f M segments, host %.1f s CPU: %.1f times faster than the silicon)\n",
+      seconds, kPaperImageSeconds, 100 * (seconds / kPaperImageSeconds - 1), options.work.samples,
+      double(result.counts.segments) / 1e6, result.cpu_seconds,
+      double(result.counts.segments) / result.cpu_seconds / (kPaperImageSegments / kPaperImageSeconds));
 }
 
 Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
@@ -119,25 +118,36 @@ Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
   json["samples"] = options.work.samples;
   json["cells"] = Json::array();
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const PaperRow& row = paper_rows()[i / 3];
+    const Cell& cell = cells[i];
+    const PaperRow& row = paper_rows()[cell.of.row];
     json["cells"].push_back({{"table", row.table},
                              {"row", row.label},
-                             {"program", program_name(kPrograms[i % 3])},
-                             {"model_seconds", cells[i].model_seconds},
-                             {"paper_seconds", cells[i].paper_seconds},
-                             {"error_percent", cells[i].error_percent()},
-                             {"fitted", is_fitted(i / 3, i % 3)}});
+                             {"program", program_name(cell.of.program)},
+                             {"model_seconds", cell.model_seconds},
+                             {"paper_seconds", cell.of.seconds()},
+                             {"error_percent", cell.error_percent()},
+                             {"fitted", is_fitted(cell.of)}});
   }
   return json;
 }
 
-void ReproduceCommand::run() const {
-  if (!json.empty()) require_writable(json);
+RenderOptions ReproduceCommand::make_options() const {
   RenderOptions options;
   options.chip = chip.chip();
   options.level = level.level();
+  options.program = paper_program();
   options.work.samples = samples;
+  return options;
+}
+
+void ReproduceCommand::run() const {
+  if (!json.empty()) require_writable(json);
+  const RenderOptions options = make_options();
   const Scene loaded = load_scene(scene);
+  if (image) {
+    measure_image(loaded, options);
+    return;
+  }
   const std::vector<Cell> cells = measure(loaded, options);
   std::printf("%s at %d x %d, %d samples a pixel; chip %s\n\n", loaded.name.c_str(), loaded.film.width,
               loaded.film.height, samples, options.chip.preset.c_str());
@@ -164,6 +174,7 @@ void add_reproduce_command(CLI::App& app) {
   command.add_option("--jobs", state->jobs, "Runs at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  command.add_flag("--image", state->image, "Render the paper's image instead and compare its time");
   command.add_option("--json", state->json, "Also write the cells to this file");
   command.callback([state] { state->run(); });
 }

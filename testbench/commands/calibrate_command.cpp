@@ -1,0 +1,124 @@
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "model/chip_presets.hpp"
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/command_options.hpp"
+#include "testbench/commands/commands.hpp"
+#include "testbench/paper_alternatives.hpp"
+#include "testbench/scene/scene_file.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CalibrateCommand {
+  std::string scene = "scenes/cornell_box";
+  std::string closed_scene = "scenes/cornell_box_closed";
+  std::string size;
+  ChipOptions chip;
+  LevelOption level;
+  CalibrationOptions options;
+  bool alternatives = false;
+  std::string header;
+  std::string json;
+
+  void run() const;
+
+ private:
+  Scene load(const std::string& path) const;
+};
+
+Scene CalibrateCommand::load(const std::string& path) const {
+  Scene loaded = load_scene(path);
+  if (!size.empty()) loaded.film = parse_film_size(size);
+  return loaded;
+}
+
+void print_header() {
+  std::printf("%-34s %9s %8s %8s   %9s %9s\n%-34s %9s %8s %8s   %9s %9s\n", "assumption", "code", "cycles",
+              "cycles", "mean", "worst", "", "quality", "a PE", "a call", "error", "error");
+}
+
+void print_row(const Assumptions& assumptions, const Calibration& result) {
+  std::printf("%-34s %9.4f %8g %8g   %8.2f%% %8.2f%%%s\n", assumptions.name.c_str(),
+              result.constants.code_quality_factor, result.constants.per_pe_cycles,
+              result.constants.transfer_call_cycles, 100 * result.mean_error, 100 * result.worst_error,
+              result.converged ? "" : "  (the fitted cells cannot be met)");
+}
+
+Json to_json(const Assumptions& assumptions, const Calibration& result) {
+  Json json{{"assumption", assumptions.name}, {"chips", assumptions.chips}};
+  for (const auto& [key, value] : result.constants.settings()) json["constants"][key] = value;
+  json["converged"] = result.converged;
+  json["iterations"] = result.iterations;
+  json["mean_error_of_predicted"] = result.mean_error;
+  json["worst_error_of_predicted"] = result.worst_error;
+  const std::vector<PaperCell> cells = paper_cells();
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    json["cells"].push_back({{"cell", cells[i].name()},
+                             {"model_seconds", result.seconds[i] / assumptions.chips},
+                             {"paper_seconds", cells[i].seconds()},
+                             {"fitted", is_fitted(cells[i])}});
+  return json;
+}
+
+void CalibrateCommand::run() const {
+  if (!header.empty()) require_writable(header);
+  if (!json.empty()) require_writable(json);
+  CalibrationOptions fit = options;
+  fit.level = level.level();
+  const Assumptions base{"preset paper", chip.chip(), paper_program(), load(scene)};
+  const std::vector<Assumptions> all =
+      alternatives ? paper_alternatives(base, load(closed_scene)) : std::vector<Assumptions>{base};
+  std::printf("Three constants fitted to three cells (");
+  for (const PaperCell& cell : fitted_cells())
+    std::printf("%s%s", cell.row == 1 && cell.program == path_tracer::Program::segments ? "" : "; ",
+                cell.name().c_str());
+  std::printf("), errors of the other cells\n\n");
+  print_header();
+  Json rows = Json::array();
+  for (const Assumptions& assumptions : all) {
+    const Calibration result = calibrate(
+        assumptions, fit, [](const std::string& line) { std::fprintf(stderr, "  %s\n", line.c_str()); });
+    print_row(assumptions, result);
+    std::fflush(stdout);
+    rows.push_back(to_json(assumptions, result));
+    if (&assumptions == &all.front() && !header.empty())
+      write_bytes_atomically(header, paper_constants_header(result.constants));
+  }
+  if (!json.empty()) write_bytes_atomically(json, rows.dump(2) + "\n");
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand(
+      "calibrate",
+      "Fit the constants of preset paper to three cells of the paper's tables, predict the others");
+  const auto state = std::make_shared<CalibrateCommand>();
+  state->options.at_once = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
+  command.add_option("--closed-scene", state->closed_scene, "Scene of the alternative 'closed box'")
+      ->capture_default_str();
+  command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
+  state->chip.add_to(command, "paper");
+  state->level.add_to(command);
+  command.add_option("--samples", state->options.samples, "Paths a pixel")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  command.add_option("--jobs", state->options.at_once, "Runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command.add_flag("--alternatives", state->alternatives,
+                   "Fit again under each alternative to what the paper leaves open");
+  command.add_option("--write", state->header,
+                     "Write the constants as a C++ header (model/paper_constants.hpp)");
+  command.add_option("--json", state->json, "Also write constants and cells to this file");
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

@@ -17,7 +17,7 @@ struct StripCounts {
 /// number and the instruction stream are ambient there, and so they are here. Set only by run_strips
 /// (kernel.hpp).
 struct Strip {
-  MaskLanes enabled{};                  ///< PEs that take part in assignments
+  StoredMask enabled{};                 ///< PEs that take part in assignments
   StripCounts issued;                   ///< instructions since the last flush into `node`
   IssueTree::Node* node = nullptr;      ///< where in the kernel's control flow the strip is
   std::size_t next_region = 0;          ///< ordinal of the next data-dependent region in `node`

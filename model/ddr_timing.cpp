@@ -20,7 +20,7 @@ DdrTiming::DdrTiming(const ChipConfig::Ddr& config)
 
 /// Accesses of one direction and arrival. What each page access leaves to the next is kept here and written
 /// back once: a gather has a hundred of them, each depends on the one before, and by way of memory that takes
-/// twice as long.
+/// longer (4 million segments: 103 ms, so 65 ms).
 class DdrTiming::Burst {
  public:
   Burst(DdrTiming& ddr, BusDirection direction, Cycles arrival)

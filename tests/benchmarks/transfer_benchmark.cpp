@@ -90,7 +90,7 @@ void ddr_access(benchmark::State& state) {
                         static_cast<int>(state.range(1)));
   model::MonoPieces pieces;
   pieces.describe(request.transfer(), kPes, rules());
-  model::DdrTiming timing(model::ChipConfig{}.ddr);
+  model::DdrTiming timing(model::preset("csx600").ddr);
   model::Cycles now = 0;
   for (auto _ : state) now = timing.access(pieces.runs(), false, now).finish;
   benchmark::DoNotOptimize(now);

@@ -6,7 +6,7 @@ packages=(
   libsystemc-dev libglm-dev libopenexr-dev libpng-dev libssl-dev
   libsleef-dev librandom123-dev libtinyobjloader-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-  libgtest-dev
+  libgtest-dev libbenchmark-dev
 )
 
 install_missing_packages() {

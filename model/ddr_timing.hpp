@@ -7,6 +7,7 @@
 #include "model/chip_config.hpp"
 #include "model/cycles.hpp"
 #include "model/divisor.hpp"
+#include "model/mono_pieces.hpp"
 
 namespace model {
 
@@ -51,6 +52,9 @@ class DdrTiming {
   explicit DdrTiming(const ChipConfig::Ddr& config);
 
   Access access(cn::MonoAddress address, std::uint64_t bytes, bool write, Cycles arrival);
+  /// Accesses that arrive together, one after the other; from the start of the first to the finish of the
+  /// last.
+  Access access(const std::vector<MonoPieces::Run>& runs, bool write, Cycles arrival);
 
   const DdrStatistics& statistics() const { return statistics_; }
 
@@ -62,8 +66,10 @@ class DdrTiming {
   };
   enum class BusDirection : std::uint8_t { unused, read, write };
 
-  /// A piece within one page; returns whether it hit, and leaves the end of the transfer in bus_free_.
-  bool access_page(std::uint64_t page, std::uint64_t bytes, BusDirection direction, Cycles arrival);
+  class Burst;
+  /// Cycles that the data bus rests before it moves data in that direction.
+  Cycles turn_round(BusDirection direction);
+  /// Books the refreshes due by `now`, at least one.
   void refresh_until(Cycles now);
 
   Divisor page_bytes_;
@@ -78,7 +84,6 @@ class DdrTiming {
 
   std::vector<Bank> bank_;
   Cycles bus_free_ = 0;
-  Cycles transfer_start_ = 0;  ///< of the latest page access
   BusDirection bus_direction_ = BusDirection::unused;
   Cycles next_refresh_;
   DdrStatistics statistics_;

@@ -8,19 +8,25 @@
 #include <string>
 #include <vector>
 
+#include "model/huge_pages.hpp"
+
 namespace model {
 
-LazyMemory::LazyMemory(std::uint64_t bytes) : size_bytes_(bytes) {
-  void* const mapped =
-      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (mapped == MAP_FAILED)
+LazyMemory::LazyMemory(std::uint64_t bytes)
+    : size_bytes_(bytes), mapped_bytes_(bytes <= ~kHugePageBytes ? bytes + kHugePageBytes : bytes) {
+  mapped_ = mmap(nullptr, mapped_bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE,
+                 -1, 0);
+  if (mapped_ == MAP_FAILED)
     throw std::runtime_error("mono memory of " + std::to_string(bytes) +
                              " bytes: the host refused the address range");
-  data_ = static_cast<std::uint8_t*>(mapped);
+  // From the start of a huge page: what the firmware uses most lies at low addresses.
+  const auto address = reinterpret_cast<std::uintptr_t>(mapped_);
+  data_ = static_cast<std::uint8_t*>(mapped_) + (kHugePageBytes - address % kHugePageBytes) % kHugePageBytes;
+  prefer_huge_pages(data_, bytes);
 }
 
 LazyMemory::~LazyMemory() {
-  munmap(data_, size_bytes_);
+  munmap(mapped_, mapped_bytes_);
 }
 
 std::uint64_t LazyMemory::resident_bytes() const {

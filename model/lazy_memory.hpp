@@ -21,7 +21,9 @@ class LazyMemory {
 
  private:
   std::uint64_t size_bytes_;
-  std::uint8_t* data_;
+  std::uint64_t mapped_bytes_;
+  void* mapped_;
+  std::uint8_t* data_;  ///< within what is mapped
 };
 
 }  // namespace model

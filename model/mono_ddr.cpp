@@ -53,13 +53,9 @@ tlm::tlm_response_status MonoDdr::serve(PeAddresses& addresses, sc_core::sc_time
     if (!contains(run.address, run.bytes)) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
   if (pieces.runs().empty()) return tlm::TLM_OK_RESPONSE;
   const Cycles arrival = cycle_of_delay(clock_, delay);
-  const MonoPieces::Run& first = pieces.runs().front();
-  const DdrTiming::Access access = timing_.access(first.address, first.bytes, pieces.write(), arrival);
-  Cycles finish = access.finish;
-  for (std::size_t i = 1; i < pieces.runs().size(); ++i)
-    finish = timing_.access(pieces.runs()[i].address, pieces.runs()[i].bytes, pieces.write(), arrival).finish;
+  const DdrTiming::Access access = timing_.access(pieces.runs(), pieces.write(), arrival);
   addresses.first_data = delay_until(clock_, access.start);
-  delay = delay_until(clock_, finish);
+  delay = delay_until(clock_, access.finish);
   return tlm::TLM_OK_RESPONSE;
 }
 

@@ -76,7 +76,7 @@ void MonoPieces::describe(const cn::Transfer& transfer, int num_pes, const Rules
 }
 
 bool MonoPieces::describe_gapless_array(int num_pes, const Rules& rules) {
-  if (!by_pe_.empty() || stride_bytes_ != std::uint64_t(bytes_per_pe_)) return false;
+  if (!by_pe_.empty() || bytes_per_pe_ == 0 || stride_bytes_ != std::uint64_t(bytes_per_pe_)) return false;
   int lowest = num_pes;
   int highest = -1;
   int enabled_pes = 0;
@@ -98,7 +98,26 @@ bool MonoPieces::describe_gapless_array(int num_pes, const Rules& rules) {
 void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   const bool consolidate = rules.consolidate_equal_addresses && !write();
   if (consolidate) seen_.clear();
-  const cn::MonoPlaces where = places();
+  // Decided here instead of for each piece: where addresses come from, and whether some may be equal.
+  const auto describe_with = [&](const auto& address_of) {
+    if (consolidate) {
+      describe_pieces(num_pes, rules, address_of,
+                      [this](cn::MonoAddress address) { return seen_.insert(address); });
+    } else {
+      describe_pieces(num_pes, rules, address_of, [](cn::MonoAddress) { return true; });
+    }
+  };
+  if (by_pe_.empty()) {
+    describe_with(
+        [first = first_, stride = stride_bytes_](int pe) { return first + std::uint64_t(pe) * stride; });
+  } else {
+    describe_with([first = first_, by_pe = by_pe_.data()](int pe) { return first + by_pe[pe]; });
+  }
+}
+
+template <class AddressOf, class IsNew>
+void MonoPieces::describe_pieces(int num_pes, const Rules& rules, const AddressOf& address_of,
+                                 const IsNew& is_new) {
   const auto bytes = std::uint64_t(bytes_per_pe_);
   const Divisor packet = rules.packet_bytes;
   const std::uint64_t packets_bytes = whole_packets(bytes, packet);
@@ -109,8 +128,8 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   std::uint64_t run_bytes = 0;
   for_each_enabled(enabled_, num_pes, [&](int pe) {
     ++pes;
-    const cn::MonoAddress address = where[pe];
-    if (consolidate && !seen_.insert(address)) return;
+    const cn::MonoAddress address = address_of(pe);
+    if (!is_new(address)) return;
     ++pieces;
     misaligned += is_misaligned(address, bytes, packets_bytes, packet);
     if (run_bytes != 0 && run_address + run_bytes == address) {

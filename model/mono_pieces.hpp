@@ -69,6 +69,8 @@ class MonoPieces {
 
   bool describe_gapless_array(int num_pes, const Rules& rules);
   void describe_each(int num_pes, const Rules& rules);
+  template <class AddressOf, class IsNew>
+  void describe_pieces(int num_pes, const Rules& rules, const AddressOf& address_of, const IsNew& is_new);
 
   cn::Direction direction_ = cn::Direction::mono_to_poly;
   cn::MonoAddress first_ = 0;

@@ -57,6 +57,7 @@ bool MonoWindow::within(const cn::Transfer& transfer) const {
     return transfer.mono.first <= highest && stride <= size_bytes_ &&
            transfer.mono.first + std::uint64_t(poly_.num_pes() - 1) * stride <= highest;
   }
+  if (cn::bits_of_places(transfer, poly_.num_pes()) <= highest) return true;
   bool all = true;
   for (int first_pe = 0; first_pe < poly_.num_pes(); first_pe += cn::kStripLanes) {
     const unsigned bits = transfer.enabled.strip_bits(first_pe / cn::kStripLanes);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "model/huge_pages.hpp"
 #include "testbench/error.hpp"
 
 namespace testbench {
@@ -50,8 +51,11 @@ Film::Film(FilmSize size, double scale)
       sum_quantum_exponent_(exponent_of(scale) - kSumFractionBits),
       square_quantum_exponent_(2 * exponent_of(scale) - kSquareFractionBits),
       sum_units_(std::ldexp(1.0, -sum_quantum_exponent_ - 63)),
-      square_units_(std::ldexp(1.0, -square_quantum_exponent_ - 63)),
-      pixels_(checked_pixels(size)) {}
+      square_units_(std::ldexp(1.0, -square_quantum_exponent_ - 63)) {
+  pixels_.reserve(checked_pixels(size));
+  model::prefer_huge_pages(pixels_.data(), pixels_.capacity() * sizeof(Pixel));
+  pixels_.resize(checked_pixels(size));
+}
 
 /// floor(value * units * 2^63), exact: `units` is a power of two and value * units is below 2^31.
 Film::UInt128 Film::to_fixed_point(double value, double units) {

@@ -10,8 +10,12 @@ void ResultReader::fetch(const Read& read) {
   records_.resize(std::size_t(header.records));
   read(layout_.results[half_].address, records_.data(),
        records_.size() * sizeof(path_tracer::RadianceRecord));
-  for (const path_tracer::RadianceRecord& record : records_)
+  constexpr std::size_t kAhead = 16;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const path_tracer::RadianceRecord& record = records_[i];
+    if (i + kAhead < records_.size()) film_.prefetch(records_[i + kAhead].pixel);
     if (record.pixel >= 0) film_.add(record.pixel, {record.radiance.x, record.radiance.y, record.radiance.z});
+  }
   half_ = 1 - half_;
 }
 

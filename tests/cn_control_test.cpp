@@ -26,7 +26,7 @@ class CnControl : public test_support::StripFixture {
   /// `ran[pe]` counts, for the test, how often a PE was enabled there.
   static void tick(PerPe<int>& ran) {
     for (int i = 0; i < cn::kStripLanes; ++i)
-      if (cn::strip.enabled[i] != 0) ++ran[std::size_t(cn::strip.first_pe + i)];
+      if (cn::MaskLanes(cn::strip.enabled)[i] != 0) ++ran[std::size_t(cn::strip.first_pe + i)];
   }
   /// One instruction that nothing else issues.
   static void work() { cn::issue(InstructionClass::fp64_exp); }

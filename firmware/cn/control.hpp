@@ -21,14 +21,10 @@ class EnableScope {
   /// Enables the complement of the condition within the outer scope: the else part.
   void invert() {
     issue(InstructionClass::enable);
-    strip.enabled =
-        each_chunk<std::int64_t>([&](int i) { return outer_.chunk[i] & ~strip.enabled.chunk[i]; });
+    strip.enabled = outer_ & ~strip.enabled;
   }
 
-  void narrow(const mask& condition) {
-    strip.enabled =
-        each_chunk<std::int64_t>([&](int i) { return strip.enabled.chunk[i] & condition.lanes().chunk[i]; });
-  }
+  void narrow(const mask& condition) { strip.enabled = strip.enabled & condition.lanes(); }
 
  private:
   MaskLanes outer_;

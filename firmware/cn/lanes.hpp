@@ -45,20 +45,9 @@ struct Lanes {
   }
 };
 
-/// Enable bits of a strip: all ones or zero in each lane.
-using MaskLanes = Lanes<std::int64_t>;
-
-template <class T>
-inline Lanes<T> load_lanes(const void* address) {
-  Lanes<T> result;
-  std::memcpy(&result, address, sizeof(result));
-  return result;
-}
-
-template <class T>
-inline void store_lanes(void* address, const Lanes<T>& value) {
-  std::memcpy(address, &value, sizeof(value));
-}
+/// Words of poly memory, to read and write whole rows by. They have the element type that poly memory really
+/// has and its alignment, so that the compiler knows which of a kernel's other values a store cannot change.
+using RowChunk __attribute__((vector_size(Lanes<std::uint64_t>::kChunkBytes), aligned(8))) = std::uint64_t;
 
 template <class R, class F, std::size_t... i>
 inline Lanes<R> each_chunk_of(F& f, std::index_sequence<i...>) {
@@ -98,13 +87,18 @@ inline Lanes<To> bit_cast_lanes(const Lanes<From>& from) {
   return each_chunk<To>([&](int i) { return reinterpret_cast<typename Lanes<To>::Chunk>(from.chunk[i]); });
 }
 
+/// @param row words of poly memory
 template <class T>
-inline Lanes<T> select_lanes(const MaskLanes& mask, const Lanes<T>& if_set, const Lanes<T>& otherwise) {
-  if constexpr (sizeof(T) == sizeof(std::int64_t)) {
-    return each_chunk<T>([&](int i) { return mask.chunk[i] ? if_set.chunk[i] : otherwise.chunk[i]; });
-  } else {
-    return each_lane<T>([&](int i) { return mask[i] ? if_set[i] : otherwise[i]; });
-  }
+inline Lanes<T> load_lanes(const void* row) {
+  const auto* const chunks = static_cast<const RowChunk*>(row);
+  return bit_cast_lanes<T>(each_chunk<std::uint64_t>([&](int i) { return chunks[i]; }));
+}
+
+template <class T>
+inline void store_lanes(void* row, const Lanes<T>& value) {
+  auto* const chunks = static_cast<RowChunk*>(row);
+  const auto words = bit_cast_lanes<std::uint64_t>(value);
+  each_chunk<std::uint64_t>([&](int i) { return chunks[i] = words.chunk[i]; });
 }
 
 /// Products of the low 32 bits of each lane. Spelled out because GCC makes a full 64-bit product of it
@@ -120,28 +114,6 @@ inline Lanes<std::uint64_t> multiply_low_words(const Lanes<std::uint64_t>& a, co
     return Chunk(_mm_mul_epu32(__m128i(a.chunk[i]), __m128i(b.chunk[i])));
 #endif
   });
-}
-
-/// Bit i is lane i's.
-inline std::uint32_t mask_bits(const MaskLanes& mask) {
-  std::uint32_t bits = 0;
-  for (int i = 0; i < MaskLanes::kChunks; ++i) {
-#if defined(__AVX512F__)
-    bits |= std::uint32_t{_mm512_movepi64_mask(__m512i(mask.chunk[i]))};
-#elif defined(__AVX2__)
-    bits |= static_cast<std::uint32_t>(_mm256_movemask_pd(__m256d(mask.chunk[i]))) << (4 * i);
-#else
-    bits |= static_cast<std::uint32_t>(_mm_movemask_pd(__m128d(mask.chunk[i]))) << (2 * i);
-#endif
-  }
-  return bits;
-}
-
-inline MaskLanes mask_from_bits(std::uint32_t bits) {
-  const MaskLanes lane_bit = each_lane<std::int64_t>([](int i) { return std::int64_t{1} << i; });
-  const std::int64_t broadcast_bits = bits;
-  return each_chunk<std::int64_t>(
-      [&](int i) { return (lane_bit.chunk[i] & (MaskLanes::Chunk{} + broadcast_bits)) != 0; });
 }
 
 }  // namespace cn

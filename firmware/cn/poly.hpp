@@ -81,15 +81,15 @@ class mask {
 
   friend mask operator&(const mask& a, const mask& b) {
     issue(InstructionClass::int16_alu);
-    return mask(each_chunk<std::int64_t>([&](int i) { return a.lanes_.chunk[i] & b.lanes_.chunk[i]; }));
+    return mask(a.lanes_ & b.lanes_);
   }
   friend mask operator|(const mask& a, const mask& b) {
     issue(InstructionClass::int16_alu);
-    return mask(each_chunk<std::int64_t>([&](int i) { return a.lanes_.chunk[i] | b.lanes_.chunk[i]; }));
+    return mask(a.lanes_ | b.lanes_);
   }
   friend mask operator!(const mask& a) {
     issue(InstructionClass::int16_alu);
-    return mask(each_chunk<std::int64_t>([&](int i) { return ~a.lanes_.chunk[i]; }));
+    return mask(~a.lanes_);
   }
 
  private:
@@ -181,22 +181,10 @@ class poly {
     return binary(Traits::kAdd, [&](int i) { return a.lanes_.chunk[i] << bits; });
   }
 
-  friend mask operator<(const poly& a, const poly& b) {
-    return compare([&](int i) { return a.lanes_.chunk[i] < b.lanes_.chunk[i]; },
-                   [&](int i) { return a.lanes_[i] < b.lanes_[i]; });
-  }
-  friend mask operator<=(const poly& a, const poly& b) {
-    return compare([&](int i) { return a.lanes_.chunk[i] <= b.lanes_.chunk[i]; },
-                   [&](int i) { return a.lanes_[i] <= b.lanes_[i]; });
-  }
-  friend mask operator==(const poly& a, const poly& b) {
-    return compare([&](int i) { return a.lanes_.chunk[i] == b.lanes_.chunk[i]; },
-                   [&](int i) { return a.lanes_[i] == b.lanes_[i]; });
-  }
-  friend mask operator!=(const poly& a, const poly& b) {
-    return compare([&](int i) { return a.lanes_.chunk[i] != b.lanes_.chunk[i]; },
-                   [&](int i) { return a.lanes_[i] != b.lanes_[i]; });
-  }
+  friend mask operator<(const poly& a, const poly& b) { return compare<Comparison::less>(a, b); }
+  friend mask operator<=(const poly& a, const poly& b) { return compare<Comparison::less_or_equal>(a, b); }
+  friend mask operator==(const poly& a, const poly& b) { return compare<Comparison::equal>(a, b); }
+  friend mask operator!=(const poly& a, const poly& b) { return compare<Comparison::not_equal>(a, b); }
   friend mask operator>(const poly& a, const poly& b) { return b < a; }
   friend mask operator>=(const poly& a, const poly& b) { return b <= a; }
 
@@ -207,15 +195,10 @@ class poly {
     return poly(wrap_lanes<T>(each_chunk<Lane>(f)));
   }
 
-  template <class ByChunk, class ByLane>
-  static mask compare([[maybe_unused]] ByChunk&& by_chunk, [[maybe_unused]] ByLane&& by_lane) {
+  template <Comparison comparison>
+  static mask compare(const poly& a, const poly& b) {
     issue(Traits::kAdd);
-    if constexpr (sizeof(Lane) == sizeof(std::int64_t)) {
-      return mask(each_chunk<std::int64_t>([&](int i) { return MaskLanes::Chunk(by_chunk(i)); }));
-    } else {
-      return mask(
-          each_lane<std::int64_t>([&](int i) { return by_lane(i) ? std::int64_t{-1} : std::int64_t{0}; }));
-    }
+    return mask(compare_lanes<comparison>(a.lanes_, b.lanes_));
   }
 
   Lanes<Lane> lanes_;

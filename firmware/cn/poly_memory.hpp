@@ -50,20 +50,24 @@ class PolyMemory {
   const std::vector<Buffer>& buffers() const { return buffers_; }
   std::string map() const;
 
-  std::uint64_t* words() { return words_.data(); }
-  const std::uint64_t* words() const { return words_.data(); }
+  std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(strips_.data()); }
+  const std::uint64_t* words() const { return reinterpret_cast<const std::uint64_t*>(strips_.data()); }
 
   /// @param offset_bytes a multiple of 8
-  std::uint64_t* row(int offset_bytes) { return words_.data() + std::size_t(offset_bytes / 8) * num_pes_; }
+  std::uint64_t* row(int offset_bytes) { return words() + std::size_t(offset_bytes / 8) * num_pes_; }
   const std::uint64_t* row(int offset_bytes) const {
-    return words_.data() + std::size_t(offset_bytes / 8) * num_pes_;
+    return words() + std::size_t(offset_bytes / 8) * num_pes_;
   }
 
  private:
   int num_pes_;
   int capacity_bytes_;
   std::vector<Buffer> buffers_;
-  std::vector<std::uint64_t> words_;
+  /// One word of a strip's PEs, on its own cache line: a vector that straddles two costs twice.
+  struct alignas(64) StripOfWords {
+    std::uint64_t word[8];
+  };
+  std::vector<StripOfWords> strips_;
 };
 
 }  // namespace cn

@@ -61,10 +61,11 @@ struct PolyField {
   using Lane = typename poly<T>::Lane;
   static constexpr std::uint64_t kWords = (sizeof(T) + 3) / 4;
 
-  int shift() const { return 8 * (offset_bytes % 8); }
+  int shift() const { return static_cast<int>(8 * (unsigned(offset_bytes) % 8)); }
   std::uint64_t* address() const {
-    return strip.poly_words + std::size_t(offset_bytes / 8) * std::size_t(strip.num_pes) +
-           std::size_t(strip.first_pe);
+    // Unsigned: no address is negative, and the division is a shift.
+    return strip.poly_words + std::size_t(unsigned(offset_bytes) / 8) * unsigned(strip.num_pes) +
+           unsigned(strip.first_pe);
   }
 };
 

@@ -3,16 +3,22 @@
 #include <cstdint>
 
 #include "firmware/cn/instruction.hpp"
-#include "firmware/cn/lanes.hpp"
+#include "firmware/cn/mask_lanes.hpp"
 
 namespace cn {
+
+/// IssueCounts in a type of their own: no store to poly memory, which is std::uint64_t, can change these, so
+/// the compiler adds up a kernel's instructions when it compiles it instead of one by one when it runs.
+struct StripCounts {
+  unsigned long long by_class[kInstructionClasses] = {};
+};
 
 /// The strip of PEs that is executing. Cn has no syntax for the machine a statement runs on: enable bits, PE
 /// number and the instruction stream are ambient there, and so they are here. Set only by run_strips
 /// (kernel.hpp).
 struct Strip {
-  MaskLanes enabled{};                  ///< PEs that take part in assignments
-  IssueCounts issued;                   ///< instructions since the last flush into `node`
+  StoredMask enabled{};                 ///< PEs that take part in assignments
+  StripCounts issued;                   ///< instructions since the last flush into `node`
   IssueTree::Node* node = nullptr;      ///< where in the kernel's control flow the strip is
   std::size_t next_region = 0;          ///< ordinal of the next data-dependent region in `node`
   std::uint64_t* poly_words = nullptr;  ///< word w of PE p is at [w * num_pes + p]
@@ -23,13 +29,15 @@ struct Strip {
 inline thread_local Strip strip;
 
 inline void issue(InstructionClass instruction, std::uint64_t times = 1) {
-  strip.issued[instruction] += times;
+  strip.issued.by_class[static_cast<std::size_t>(instruction)] += times;
 }
 
 /// Books what was issued since the last flush; only the first strip to pass a node counts its instructions.
 inline void flush_issued() {
-  if (!strip.node->reached) strip.node->counts += strip.issued;
-  strip.issued = IssueCounts{};
+  if (!strip.node->reached)
+    for (std::size_t i = 0; i < kInstructionClasses; ++i)
+      strip.node->counts.by_class[i] += strip.issued.by_class[i];
+  strip.issued = StripCounts{};
 }
 
 /// Runs `body` as the given iteration of a data-dependent region of the current node.

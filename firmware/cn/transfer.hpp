@@ -25,6 +25,14 @@ struct Transfer {
   Semaphore done;
 };
 
+/// Every bit that is set in the place of any PE, enabled or not. At least as large as each place and a
+/// multiple of 2^k only if each is: checks that pass on it need not look at PEs one by one.
+inline std::uint64_t bits_of_places(const Transfer& transfer, int num_pes) {
+  std::uint64_t bits = 0;
+  for (int pe = 0; pe < num_pes; ++pe) bits |= transfer.mono.first + transfer.mono.by_pe[pe];
+  return bits;
+}
+
 /// The first enabled PE whose place is not `allowed(place)`, or -1.
 template <class Allowed>
 int first_pe_not(const Transfer& transfer, int num_pes, Allowed&& allowed) {

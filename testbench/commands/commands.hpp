@@ -10,5 +10,6 @@ void add_render_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_params_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
 
 }  // namespace testbench

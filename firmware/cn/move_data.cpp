@@ -1,0 +1,310 @@
+// Built once for each x86-64 level (firmware/CMakeLists.txt); CN_MOVE_DATA is then the level's name for
+// move_data.
+
+#include <immintrin.h>
+
+#include <cstring>
+
+#include "firmware/cn/transfer.hpp"
+
+#ifndef CN_MOVE_DATA
+#define CN_MOVE_DATA move_data
+#endif
+
+namespace cn {
+namespace {
+
+/// One strip's part of a transfer: `words` words between each enabled PE's place and its column of `row`.
+struct StripTransfer {
+  std::uint8_t* place[kStripLanes];  ///< valid for every lane, enabled or not
+  std::uint64_t* row;
+  std::size_t row_pitch;
+  int words;
+  unsigned enabled;
+};
+
+constexpr unsigned kAllLanes = (1u << kStripLanes) - 1;
+
+// Mono memory holds a PE's words side by side, poly memory a word of all PEs, so a transfer transposes: in
+// registers, kBlockWords words of each PE at a time. The last block's `count` is a template argument because
+// most records are shorter than two blocks.
+#if defined(__AVX512F__)
+
+constexpr int kBlockWords = 8;
+// By GCC's own shuffles: the headers' intrinsics of AVX-512 trip its warning of uninitialised values.
+using Words __attribute__((vector_size(64))) = long long;
+using Block = Words[8];
+
+[[gnu::always_inline]] inline void transpose(Block& block) {
+  constexpr Words kLowOfPairs{0, 8, 2, 10, 4, 12, 6, 14};
+  constexpr Words kHighOfPairs{1, 9, 3, 11, 5, 13, 7, 15};
+  constexpr Words kEvenPairs{0, 1, 4, 5, 8, 9, 12, 13};
+  constexpr Words kOddPairs{2, 3, 6, 7, 10, 11, 14, 15};
+  Block pairs;
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; i += 2) {
+    pairs[i] = __builtin_shuffle(block[i], block[i + 1], kLowOfPairs);
+    pairs[i + 1] = __builtin_shuffle(block[i], block[i + 1], kHighOfPairs);
+  }
+  Block fours;
+#pragma GCC unroll 8
+  for (int i = 0; i < 2; ++i) {
+#pragma GCC unroll 8
+    for (int half = 0; half < 8; half += 4) {
+      fours[half + i] = __builtin_shuffle(pairs[half + i], pairs[half + i + 2], kEvenPairs);
+      fours[half + i + 2] = __builtin_shuffle(pairs[half + i], pairs[half + i + 2], kOddPairs);
+    }
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < 4; ++i) {
+    block[i] = __builtin_shuffle(fours[i], fours[i + 4], kEvenPairs);
+    block[i + 4] = __builtin_shuffle(fours[i], fours[i + 4], kOddPairs);
+  }
+}
+
+template <int count>
+[[gnu::always_inline]] inline void load_block(const StripTransfer& strip, int first_word,
+                                              std::uint64_t* row) {
+  constexpr auto kWords = static_cast<__mmask8>((1u << count) - 1);
+  Block block;
+#pragma GCC unroll 8
+  for (int lane = 0; lane < 8; ++lane) {
+    const std::uint8_t* const from = strip.place[lane] + 8 * first_word;
+    block[lane] = Words(count == 8 ? _mm512_loadu_si512(from) : _mm512_maskz_loadu_epi64(kWords, from));
+  }
+  transpose(block);
+  if (strip.enabled == kAllLanes) {
+#pragma GCC unroll 8
+    for (int i = 0; i < count; ++i)
+      _mm512_storeu_si512(row + std::size_t(i) * strip.row_pitch, __m512i(block[i]));
+  } else {
+    const auto lanes = static_cast<__mmask8>(strip.enabled);
+#pragma GCC unroll 8
+    for (int i = 0; i < count; ++i)
+      _mm512_mask_storeu_epi64(row + std::size_t(i) * strip.row_pitch, lanes, __m512i(block[i]));
+  }
+}
+
+template <int count>
+[[gnu::always_inline]] inline void store_words(std::uint8_t* to, const Words& words) {
+  if constexpr (count == 8) {
+    _mm512_storeu_si512(to, __m512i(words));
+  } else {
+    _mm512_mask_storeu_epi64(to, static_cast<__mmask8>((1u << count) - 1), __m512i(words));
+  }
+}
+
+template <int count>
+[[gnu::always_inline]] inline void save_block(const StripTransfer& strip, int first_word,
+                                              const std::uint64_t* row) {
+  Block block{};
+#pragma GCC unroll 8
+  for (int i = 0; i < count; ++i)
+    block[i] = Words(_mm512_loadu_si512(row + std::size_t(i) * strip.row_pitch));
+  transpose(block);
+  if (strip.enabled == kAllLanes) {
+#pragma GCC unroll 8
+    for (int lane = 0; lane < 8; ++lane) store_words<count>(strip.place[lane] + 8 * first_word, block[lane]);
+  } else {
+#pragma GCC unroll 8
+    for (int lane = 0; lane < 8; ++lane)
+      if ((strip.enabled >> lane) & 1u) store_words<count>(strip.place[lane] + 8 * first_word, block[lane]);
+  }
+}
+
+#elif defined(__AVX2__)
+
+constexpr int kBlockWords = 4;
+using Words = __m256i;
+using Block = Words[4];
+
+[[gnu::always_inline]] inline void transpose(Block& block) {
+  const Words low01 = _mm256_unpacklo_epi64(block[0], block[1]);
+  const Words high01 = _mm256_unpackhi_epi64(block[0], block[1]);
+  const Words low23 = _mm256_unpacklo_epi64(block[2], block[3]);
+  const Words high23 = _mm256_unpackhi_epi64(block[2], block[3]);
+  block[0] = _mm256_permute2x128_si256(low01, low23, 0x20);
+  block[1] = _mm256_permute2x128_si256(high01, high23, 0x20);
+  block[2] = _mm256_permute2x128_si256(low01, low23, 0x31);
+  block[3] = _mm256_permute2x128_si256(high01, high23, 0x31);
+}
+
+Words* as_vector(void* address) {
+  return static_cast<Words*>(address);
+}
+
+/// All ones in the lanes whose bits are set.
+Words lanes_of_bits(unsigned bits) {
+  const Words lane_bit = _mm256_set_epi64x(8, 4, 2, 1);
+  return _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(bits), lane_bit), lane_bit);
+}
+
+template <int count>
+[[gnu::always_inline]] inline Words load_words(const std::uint8_t* from) {
+  if constexpr (count == 4) return _mm256_loadu_si256(reinterpret_cast<const Words*>(from));
+  const Words words = _mm256_set_epi64x(0, count > 2 ? -1 : 0, count > 1 ? -1 : 0, -1);
+  return _mm256_maskload_epi64(reinterpret_cast<const long long*>(from), words);
+}
+
+template <int count>
+[[gnu::always_inline]] inline void load_block(const StripTransfer& strip, int first_word,
+                                              std::uint64_t* row) {
+  for (int half = 0; half < 2; ++half, row += 4) {
+    const unsigned enabled = (strip.enabled >> (4 * half)) & 0xfu;
+    if (enabled == 0) continue;
+    Block block;
+#pragma GCC unroll 4
+    for (int lane = 0; lane < 4; ++lane)
+      block[lane] = load_words<count>(strip.place[4 * half + lane] + 8 * first_word);
+    transpose(block);
+#pragma GCC unroll 4
+    for (int i = 0; i < count; ++i) {
+      Words* const to = as_vector(row + std::size_t(i) * strip.row_pitch);
+      _mm256_storeu_si256(
+          to, enabled == 0xfu ? block[i]
+                              : _mm256_blendv_epi8(_mm256_loadu_si256(to), block[i], lanes_of_bits(enabled)));
+    }
+  }
+}
+
+/// A masked store would do for all, but AMD's take some 20 cycles.
+template <int count>
+[[gnu::always_inline]] inline void store_words(std::uint8_t* to, const Words& words) {
+  if constexpr (count == 4) {
+    _mm256_storeu_si256(as_vector(to), words);
+    return;
+  }
+  const __m128i low = _mm256_castsi256_si128(words);
+  if constexpr (count == 1) _mm_storel_epi64(reinterpret_cast<__m128i*>(to), low);
+  if constexpr (count >= 2) _mm_storeu_si128(reinterpret_cast<__m128i*>(to), low);
+  if constexpr (count == 3)
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(to + 16), _mm256_extracti128_si256(words, 1));
+}
+
+template <int count>
+[[gnu::always_inline]] inline void save_block(const StripTransfer& strip, int first_word,
+                                              const std::uint64_t* row) {
+  for (int half = 0; half < 2; ++half, row += 4) {
+    const unsigned enabled = (strip.enabled >> (4 * half)) & 0xfu;
+    Block block{};
+#pragma GCC unroll 4
+    for (int i = 0; i < count; ++i)
+      block[i] = _mm256_loadu_si256(reinterpret_cast<const Words*>(row + std::size_t(i) * strip.row_pitch));
+    transpose(block);
+#pragma GCC unroll 4
+    for (int lane = 0; lane < 4; ++lane)
+      if ((enabled >> lane) & 1u)
+        store_words<count>(strip.place[4 * half + lane] + 8 * first_word, block[lane]);
+  }
+}
+
+#else
+
+constexpr int kBlockWords = 1;
+
+template <int>
+void load_block(const StripTransfer& strip, int word, std::uint64_t* row) {
+  for (int lane = 0; lane < kStripLanes; ++lane)
+    if ((strip.enabled >> lane) & 1u) std::memcpy(&row[lane], strip.place[lane] + 8 * word, 8);
+}
+template <int>
+void save_block(const StripTransfer& strip, int word, const std::uint64_t* row) {
+  for (int lane = 0; lane < kStripLanes; ++lane)
+    if ((strip.enabled >> lane) & 1u) std::memcpy(strip.place[lane] + 8 * word, &row[lane], 8);
+}
+
+#endif
+
+template <Direction direction, int count>
+[[gnu::always_inline]] inline void move_block(const StripTransfer& strip, int first_word) {
+  std::uint64_t* const row = strip.row + std::size_t(first_word) * strip.row_pitch;
+  if constexpr (direction == Direction::mono_to_poly) {
+    load_block<count>(strip, first_word, row);
+  } else {
+    save_block<count>(strip, first_word, row);
+  }
+}
+
+/// Whether the enabled lanes' pieces follow each other without overlapping; their words may then be stored in
+/// any order.
+bool is_ascending(const StripTransfer& strip) {
+  const std::uint8_t* end = nullptr;
+  bool ascending = true;
+  for (int lane = 0; lane < kStripLanes; ++lane) {
+    if (((strip.enabled >> lane) & 1u) == 0) continue;
+    ascending &= end <= strip.place[lane];
+    end = strip.place[lane] + 8 * strip.words;
+  }
+  return ascending;
+}
+
+/// PEs are served in ascending order: of two that save to the same word, the higher one's is kept.
+void save_in_pe_order(const StripTransfer& strip) {
+  for (int lane = 0; lane < kStripLanes; ++lane)
+    if ((strip.enabled >> lane) & 1u)
+      for (int w = 0; w < strip.words; ++w)
+        std::memcpy(strip.place[lane] + 8 * w,
+                    &strip.row[std::size_t(w) * strip.row_pitch + std::size_t(lane)], 8);
+}
+
+/// Disabled PEs may hold any address; an enabled one's takes its place.
+[[gnu::always_inline]] inline void find_places(const MonoPlaces& mono, int first_pe, std::uint8_t* memory,
+                                               StripTransfer& strip) {
+  if (mono.by_pe == nullptr) {
+    std::uint8_t* const first = memory + mono[first_pe];
+    for (int lane = 0; lane < kStripLanes; ++lane)
+      strip.place[lane] = first + std::uint64_t(lane) * mono.stride_bytes;
+    return;
+  }
+  const MonoAddress* const address = mono.by_pe + first_pe;
+  const MonoAddress valid = address[__builtin_ctz(strip.enabled)];
+  for (int lane = 0; lane < kStripLanes; ++lane)
+    strip.place[lane] = memory + mono.first + ((strip.enabled >> lane) & 1u ? address[lane] : valid);
+}
+
+/// @tparam tail words beyond whole blocks
+template <Direction direction, int tail>
+void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
+  StripTransfer strip;
+  strip.row_pitch = static_cast<std::size_t>(poly.num_pes());
+  strip.words = transfer.poly.size_bytes / 8;
+  const bool may_overlap = direction == Direction::poly_to_mono &&
+                           (transfer.mono.by_pe != nullptr ||
+                            transfer.mono.stride_bytes < std::uint64_t(transfer.poly.size_bytes));
+  std::uint64_t* const row = poly.row(transfer.poly.offset_bytes);
+  const int num_pes = poly.num_pes();
+  const int in_blocks = strip.words - tail;
+  for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {
+    strip.enabled = transfer.enabled.strip_bits(first_pe / kStripLanes);
+    if (strip.enabled == 0) continue;
+    strip.row = row + first_pe;
+    find_places(transfer.mono, first_pe, mono, strip);
+    if (may_overlap && !is_ascending(strip)) {
+      save_in_pe_order(strip);
+      continue;
+    }
+    for (int w = 0; w < in_blocks; w += kBlockWords) move_block<direction, kBlockWords>(strip, w);
+    if constexpr (tail > 0) move_block<direction, tail>(strip, in_blocks);
+  }
+}
+
+template <Direction direction, int tail = 0>
+void move_with_tail(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
+  if (transfer.poly.size_bytes / 8 % kBlockWords == tail) {
+    move_strips<direction, tail>(transfer, poly, mono);
+  } else if constexpr (tail + 1 < kBlockWords) {
+    move_with_tail<direction, tail + 1>(transfer, poly, mono);
+  }
+}
+
+}  // namespace
+
+void CN_MOVE_DATA(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
+  if (transfer.direction == Direction::mono_to_poly) {
+    move_with_tail<Direction::mono_to_poly>(transfer, poly, mono);
+  } else {
+    move_with_tail<Direction::poly_to_mono>(transfer, poly, mono);
+  }
+}
+
+}  // namespace cn

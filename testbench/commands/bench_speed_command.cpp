@@ -1,0 +1,276 @@
+#include <stdlib.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/command_options.hpp"
+#include "testbench/error.hpp"
+#include "testbench/interrupt.hpp"
+#include "testbench/paper.hpp"
+#include "testbench/processes.hpp"
+#include "testbench/progress_bar.hpp"
+#include "testbench/render.hpp"
+#include "testbench/run_times.hpp"
+#include "testbench/scene/scene_file.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using path_tracer::Level;
+using path_tracer::Program;
+
+constexpr Program kPrograms[] = {Program::segments, Program::direct, Program::full};
+constexpr int kPes[] = {16, 32, 64, 96, 192, 384, 768, 1024};
+constexpr Level kLevels[] = {Level::x86_64_v2, Level::x86_64_v3, Level::x86_64_v4};
+/// Waves of a whole run fill a disk; this much of the image shows what tracing costs.
+constexpr FilmSize kTracedFilm{96, 96};
+
+/// One kind of run and what its repetitions gave.
+struct Variant {
+  std::string group;  ///< what it is compared with
+  std::string name;
+  RenderOptions options;
+  FilmSize film;
+  bool native = false;
+  bool traced = false;
+
+  RunTimes times;
+  std::uint64_t segments = 0;
+  double simulated_seconds = 0;  ///< 0 for a native run
+  std::string image_sha256;
+
+  double segments_per_second() const { return double(segments) / times.median(); }
+};
+
+std::string level_name(Level level) {
+  return "v" + std::to_string(2 + static_cast<int>(level));
+}
+
+/// The film's hash and what simulated time it took must be the same each time.
+void add_result(Variant& variant, const Json& result) {
+  const bool first = variant.times.cpu_seconds.empty();
+  const auto segments = result["segments"].get<std::uint64_t>();
+  const auto simulated_seconds = result["simulated_seconds"].get<double>();
+  const auto image_sha256 = result["image_sha256"].get<std::string>();
+  if (!first && (segments != variant.segments || simulated_seconds != variant.simulated_seconds ||
+                 image_sha256 != variant.image_sha256))
+    throw RunError("bench speed: '" + variant.group + ", " + variant.name +
+                   "' gave another image or time when it was repeated");
+  variant.segments = segments;
+  variant.simulated_seconds = simulated_seconds;
+  variant.image_sha256 = image_sha256;
+  variant.times.cpu_seconds.push_back(result["cpu_seconds"].get<double>());
+}
+
+struct BenchSpeedCommand {
+  std::string scene = "scenes/cornell_box";
+  ChipOptions chip;
+  LevelOption level;
+  int samples = 4;
+  int repetitions = 5;
+  std::string json;
+  std::string csv;
+
+  void run();
+
+ private:
+  std::vector<Variant> make_variants(const Scene& loaded) const;
+  void measure(const Scene& loaded, std::vector<Variant>& variants) const;
+  Json to_json(const std::vector<Variant>& variants) const;
+};
+
+/// Gone with all that is in it at the end of the scope.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string name = (std::filesystem::temp_directory_path() / "csx600_bench_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw RunError("cannot make a temporary directory like " + name);
+    path_ = name;
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string run_variant(const Scene& scene, const Variant& variant) {
+  const InterruptGuard interrupt;
+  const auto progress = [&](double) { return !interrupt.requested(); };
+  Scene sized = scene;
+  sized.film = variant.film;
+  RenderOptions options = variant.options;
+  std::optional<TemporaryDirectory> waves;
+  if (variant.traced) {
+    waves.emplace();
+    options.waves = WaveOptions{};
+    options.waves->vcd = waves->path() / "waves.vcd";
+  }
+  const RenderResult result =
+      variant.native ? render_natively(sized, options, progress) : render_on_chip(sized, options, progress);
+  return Json{{"cpu_seconds", result.cpu_seconds},
+              {"segments", result.counts.segments},
+              {"simulated_seconds", result.chip ? result.chip->seconds() : 0.0},
+              {"image_sha256", result.film.sha256()}}
+      .dump();
+}
+
+std::vector<Variant> BenchSpeedCommand::make_variants(const Scene& loaded) const {
+  RenderOptions base;
+  base.chip = chip.chip();
+  base.level = level.level();
+  base.work.samples = samples;
+  base.program.program = Program::full;
+  std::vector<Variant> variants;
+  const auto add = [&](const std::string& group, const std::string& name, auto&& change) {
+    Variant variant;
+    variant.group = group;
+    variant.name = name;
+    variant.options = base;
+    variant.film = loaded.film;
+    change(variant);
+    variants.push_back(std::move(variant));
+  };
+  for (const Program program : kPrograms) {
+    const auto set_program = [program](Variant& variant) { variant.options.program.program = program; };
+    // Styles of timing side by side: one more `add` each, with the style set in its options.
+    add(program_name(program), "timed", set_program);
+    add(program_name(program), "native", [&](Variant& variant) {
+      set_program(variant);
+      variant.native = true;
+    });
+  }
+  for (const bool traced : {false, true})
+    add("waves", traced ? "traced" : "untraced", [&](Variant& variant) {
+      variant.traced = traced;
+      variant.film = kTracedFilm;
+    });
+  for (const int pes : kPes)
+    add("PEs", std::to_string(pes), [&](Variant& variant) { variant.options.chip.chip.pes = pes; });
+  for (const Level of_level : kLevels)
+    if (of_level <= base.level)
+      add("level", level_name(of_level), [&](Variant& variant) { variant.options.level = of_level; });
+  return variants;
+}
+
+/// Each run in a process of its own, one at a time, the kinds in turn.
+void BenchSpeedCommand::measure(const Scene& loaded, std::vector<Variant>& variants) const {
+  std::vector<std::function<std::string()>> runs;
+  for (int i = 0; i < repetitions; ++i)
+    for (const Variant& variant : variants)
+      runs.emplace_back([&loaded, &variant] { return run_variant(loaded, variant); });
+  ProgressBar bar("bench speed");
+  const std::vector<std::string> results =
+      run_in_processes(runs, 1, [&](int finished) { bar.show(finished / double(runs.size())); });
+  for (std::size_t i = 0; i < results.size(); ++i)
+    add_result(variants[i % variants.size()], Json::parse(results[i]));
+}
+
+const Variant& find(const std::vector<Variant>& variants, const std::string& group, const std::string& name) {
+  for (const Variant& variant : variants)
+    if (variant.group == group && variant.name == name) return variant;
+  throw RunError("bench speed: no run '" + group + ", " + name + "'");
+}
+
+void print_programs(const std::vector<Variant>& variants) {
+  std::printf("  %-10s %12s %12s %14s %16s %14s\n", "program", "timed", "native", "timed/native",
+              "simulated/host", "times silicon");
+  for (const Program program : kPrograms) {
+    const Variant& timed = find(variants, program_name(program), "timed");
+    const Variant& native = find(variants, program_name(program), "native");
+    std::printf("  %-10s %7.2f M/s  %7.2f M/s  %13.2f  %15.1f  %13.1f\n", program_name(program),
+                timed.segments_per_second() * 1e-6, native.segments_per_second() * 1e-6,
+                ratio(timed.times, native.times), timed.simulated_seconds / timed.times.median(),
+                timed.segments_per_second() / silicon_segments_per_second(program));
+  }
+}
+
+void print_group(const std::vector<Variant>& variants, const std::string& group,
+                 const std::string& reference) {
+  const Variant& compared = find(variants, group, reference);
+  std::printf("\n  %-10s %16s   %s\n", group.c_str(), "segments/s", ("time, " + reference + " = 1").c_str());
+  for (const Variant& variant : variants)
+    if (variant.group == group)
+      std::printf("  %-10s %12.2f M/s   %6.2f\n", variant.name.c_str(), variant.segments_per_second() * 1e-6,
+                  ratio(variant.times, compared.times));
+}
+
+Json BenchSpeedCommand::to_json(const std::vector<Variant>& variants) const {
+  Json result;
+  result["format"] = "csx600-bench-speed-1";
+  result["scene"] = scene;
+  result["samples"] = samples;
+  result["runs"] = Json::array();
+  for (const Variant& variant : variants)
+    result["runs"].push_back(
+        {{"group", variant.group},
+         {"name", variant.name},
+         {"segments", variant.segments},
+         {"simulated_seconds", variant.native ? Json() : Json(variant.simulated_seconds)},
+         {"image_sha256", variant.image_sha256},
+         {"cpu_seconds", variant.times.cpu_seconds},
+         {"median_cpu_seconds", variant.times.median()}});
+  return result;
+}
+
+std::string to_csv(const std::vector<Variant>& variants) {
+  std::string text = "group,name,segments,simulated_seconds,median_cpu_seconds\n";
+  for (const Variant& variant : variants) {
+    char line[160];
+    std::snprintf(line, sizeof(line), "%s,%s,%llu,%.9g,%.9g\n", variant.group.c_str(), variant.name.c_str(),
+                  static_cast<unsigned long long>(variant.segments), variant.simulated_seconds,
+                  variant.times.median());
+    text += line;
+  }
+  return text;
+}
+
+void BenchSpeedCommand::run() {
+  for (const std::string& path : {json, csv})
+    if (!path.empty()) require_writable(path);
+  const Scene loaded = load_scene(scene);
+  std::vector<Variant> variants = make_variants(loaded);
+  measure(loaded, variants);
+  std::printf("%s, %d x %d, %d samples a pixel, chip %s; medians of %d runs in turn, CPU time\n\n",
+              loaded.name.c_str(), loaded.film.width, loaded.film.height, samples,
+              variants.front().options.chip.preset.c_str(), repetitions);
+  print_programs(variants);
+  print_group(variants, "waves", "untraced");
+  print_group(variants, "PEs", "96");
+  print_group(variants, "level", level_name(variants.back().options.level));
+  if (!json.empty()) write_bytes_atomically(json, to_json(variants).dump(2) + "\n");
+  if (!csv.empty()) write_bytes_atomically(csv, to_csv(variants));
+}
+
+}  // namespace
+
+void add_bench_speed_command(CLI::App& bench) {
+  CLI::App& command = *bench.add_subcommand(
+      "speed", "Host time of renders: with and without timing, traced, by number of PEs, by x86-64 level");
+  const auto state = std::make_shared<BenchSpeedCommand>();
+  command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
+  state->chip.add_to(command, "paper");
+  state->level.add_to(command);
+  command.add_option("--samples", state->samples, "Paths a pixel")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  command.add_option("--repetitions", state->repetitions, "Runs of each kind")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--json", state->json, "Also write every run's time to this file");
+  command.add_option("--csv", state->csv, "Also write the medians to this file");
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

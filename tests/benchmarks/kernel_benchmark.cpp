@@ -1,0 +1,110 @@
+// Kernels of the path tracer as the firmware runs them, at each x86-64 level that this machine executes.
+
+#include <benchmark/benchmark.h>
+
+#include <random>
+
+#include "firmware/path_tracer/kernels.hpp"
+
+namespace {
+
+using namespace path_tracer;
+
+constexpr int kPes = 96;
+constexpr int kTriangles = 38;
+
+bool is_executable(Level level) {
+  return level == Level::x86_64_v2 || (level == Level::x86_64_v3 && __builtin_cpu_supports("x86-64-v3")) ||
+         (level == Level::x86_64_v4 && __builtin_cpu_supports("x86-64-v4"));
+}
+
+/// Rays and triangles of a unit box.
+class KernelBench {
+ public:
+  KernelBench() : memory(kPes, 6144), triangles(kTriangles) {
+    for (int w = 0; w < 6144 / 8 - 2; ++w)
+      for (int pe = 0; pe < kPes; ++pe) row(8 * w)[pe] = number();
+    for (TriangleRecord& triangle : triangles) {
+      triangle.vertex = point();
+      triangle.edge1 = point();
+      triangle.edge2 = point();
+      triangle.face = static_cast<std::int32_t>(&triangle - triangles.data()) / 2;
+    }
+  }
+  double* row(int offset_bytes) { return reinterpret_cast<double*>(memory.row(offset_bytes)); }
+
+  cn::PolyMemory memory;
+  std::vector<TriangleRecord> triangles;
+  cn::LaneMask all = cn::LaneMask::first(kPes);
+  cn::IssueTree issued;
+
+ private:
+  double number() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
+  vec3<double> point() { return {number(), number(), number()}; }
+  std::mt19937 random_{1};
+};
+
+template <class Arguments>
+void run(benchmark::State& state, KernelBench& bench, const cn::Kernel<Arguments>& kernel,
+         const Arguments& arguments, double operations) {
+  for (auto _ : state) {
+    kernel.run(arguments, bench.memory, bench.all, bench.issued);
+    benchmark::ClobberMemory();
+  }
+  state.counters["each"] = benchmark::Counter(
+      operations * kPes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void intersect(benchmark::State& state, Level level) {
+  KernelBench bench;
+  LaneMask hit;
+  IntersectArguments arguments;
+  arguments.ray = PolyPointer<RayRecord>(0);
+  arguments.hit = PolyPointer<HitRecord>(512);
+  arguments.surface_place = {1024};
+  arguments.triangles = bench.triangles.data();
+  arguments.triangle_count = kTriangles;
+  arguments.hit_something = &hit;
+  run(state, bench, kernels(level).intersect, arguments, kTriangles);
+}
+
+void scatter(benchmark::State& state, Level level) {
+  KernelBench bench;
+  LaneMask light;
+  ScatterArguments arguments;
+  arguments.hit = PolyPointer<HitRecord>(0);
+  arguments.surface = PolyPointer<SurfaceRecord>(512);
+  arguments.path = PolyPointer<PathRecord>(1024);
+  arguments.scatter = PolyPointer<ScatterRecord>(1536);
+  arguments.wants_light = &light;
+  run(state, bench, kernels(level).scatter, arguments, 1);
+}
+
+void fold(benchmark::State& state, Level level) {
+  KernelBench bench;
+  FoldArguments arguments;
+  arguments.entry = PolyPointer<FinishedRecord>(0);
+  arguments.vertices = PolyPointer<VertexRecord>(512);
+  arguments.earlier = PolyPointer<FoldRecord>(1024);
+  arguments.sum = PolyPointer<FoldRecord>(1536);
+  arguments.radiance = PolyPointer<RadianceRecord>(2048);
+  arguments.flushed = PolyPointer<FoldRecord>(2560);
+  run(state, bench, kernels(level).fold, arguments, kVerticesPerLoad);
+}
+
+struct Registration {
+  Registration() {
+    constexpr std::pair<Level, const char*> kLevels[] = {
+        {Level::x86_64_v2, "v2"}, {Level::x86_64_v3, "v3"}, {Level::x86_64_v4, "v4"}};
+    for (const auto& [level, name] : kLevels) {
+      if (!is_executable(level)) continue;
+      using std::string;
+      benchmark::RegisterBenchmark((string("intersect, each triangle and PE/") + name).c_str(), intersect,
+                                   level);
+      benchmark::RegisterBenchmark((string("scatter, each PE/") + name).c_str(), scatter, level);
+      benchmark::RegisterBenchmark((string("fold, each vertex and PE/") + name).c_str(), fold, level);
+    }
+  }
+} const registration;
+
+}  // namespace

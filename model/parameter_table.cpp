@@ -188,7 +188,7 @@ void declare_array_cycles(Parameters& table) {
       1, Confidence::inferred, "4-byte word between SRAM and registers: 96 GB/s [S5] / (96 PEs x 250 MHz)"));
   table.push_back(cycles<InstructionClass::sram_vector_load>(
       1, Confidence::inferred,
-      "4-byte word of a vector load; the same path as sram, see poly.vector_loads_overlap"));
+      "4-byte word of a vector load; the same path as sram [S5], see poly.vector_loads_overlap"));
   table.push_back(cycles<InstructionClass::swazzle>(
       2, Confidence::assumed, "step of 8 bytes to the neighbouring PE [reference, section 9]"));
   table.push_back(

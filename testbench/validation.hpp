@@ -24,6 +24,7 @@ struct Figure {
   double published_low = 0;
   double published_high = 0;  ///< the same as low unless a range was published
   std::string source;
+  std::string note;  ///< what the model lacks, where it is off
 
   /// From the nearest published value; 0 within the range or on the right side of a bound.
   double error_percent() const;

@@ -18,6 +18,10 @@ std::string formatted(const char* format, const Arguments&... arguments) {
   return line;
 }
 
+bool is_off(const Figure& figure) {
+  return std::abs(figure.error_percent()) > kAimPercent;
+}
+
 std::string published_text(const Figure& figure) {
   if (figure.kind == Published::at_least) return formatted(">= %.3g", figure.published_low);
   if (figure.kind == Published::at_most) return formatted("< %.3g", figure.published_high);
@@ -35,10 +39,11 @@ std::string figures_text(const std::vector<Figure>& figures) {
                                "error", "unit", "chip", "source");
   for (const Figure& figure : figures)
     text += formatted("  %-38s %8.3g  %-12s %+7.1f%%%c %-16s %-14s ", figure.what.c_str(), figure.model,
-                      published_text(figure).c_str(), figure.error_percent(),
-                      std::abs(figure.error_percent()) > kAimPercent ? '!' : ' ', figure.unit.c_str(),
-                      figure.chip.c_str()) +
+                      published_text(figure).c_str(), figure.error_percent(), is_off(figure) ? '!' : ' ',
+                      figure.unit.c_str(), figure.chip.c_str()) +
             figure.source + '\n';
+  for (const Figure& figure : figures)
+    if (is_off(figure) && !figure.note.empty()) text += "  ! " + figure.what + ": " + figure.note + '\n';
   return text;
 }
 
@@ -104,7 +109,8 @@ Json to_json(const Validation& validation) {
                                {"published_high", figure.published_high},
                                {"published_kind", kind_name(figure.kind)},
                                {"error_percent", figure.error_percent()},
-                               {"source", figure.source}});
+                               {"source", figure.source},
+                               {"note", figure.note}});
   json["runs"] = Json::array();
   for (const CycleShares& shares : validation.shares) {
     Json percent = Json::object();

@@ -47,7 +47,7 @@ inline void seed_random(const SeedRandomArguments& arguments) {
   const Word pe = cn::reinterpret_word<std::uint32_t>(cn::pe_num());
   constexpr std::uint32_t kAboveTheLeast = 0x80;  // states below 2, 8 and 16 never leave zero
   for (std::uint32_t i = 0; i < 3; ++i)
-    arguments.word[i].write(scramble((pe + (i << 10)) ^ Word(arguments.seed)) | kAboveTheLeast);
+    arguments.word[i].write(scramble(scramble(arguments.seed) + pe + (i << 10)) | kAboveTheLeast);
 }
 
 struct NormalPair {

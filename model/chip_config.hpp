@@ -23,6 +23,7 @@ struct ChipConfig {
   struct Poly {
     int sram_bytes;
     double code_quality_factor;  ///< cycles of code = this x (instructions . cost table)
+    bool vector_loads_overlap;   ///< with vector arithmetic of the same kernel
     std::array<double, cn::kInstructionClasses> cycles;  ///< by instruction class; `sram` is per 4-byte word
   } poly;
 

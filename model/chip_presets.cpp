@@ -72,7 +72,12 @@ Preset g80_like() {
        {"poly.cycles.fp64_sincos", "2420", kAssumed, kRoutine},
        {"poly.cycles.fp64_exp", "1980", kAssumed, kRoutine},
        {"poly.cycles.fp64_log", "1980", kAssumed, kRoutine},
+       {"poly.cycles.fp64_add_vector4", "80", kAssumed, "4 x 20 single-precision operations, 1 a cycle"},
+       {"poly.cycles.fp64_mul_vector4", "96", kAssumed, "4 x 24 single-precision operations, 1 a cycle"},
+       {"poly.cycles.fp64_multiply_add_vector4", "176", kAssumed, "a multiply, then an add"},
        {"poly.cycles.swazzle", "152", kAssumed, kByMemory},
+       {"poly.cycles.swazzle_vector4", "248", kAssumed,
+        "no inter-PE path: a write and a read of memory, 2 x (60 + 4 x 16 for 32 x 8 bytes each)"},
        {"poly.cycles.reduce", "152", kAssumed, kByMemory}}};
 }
 

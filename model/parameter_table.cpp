@@ -108,6 +108,12 @@ void declare_poly(Parameters& table) {
   table.push_back(real<group, &Poly::code_quality_factor>(
       "poly.code_quality_factor", "-", 1, {0.01, 100}, Confidence::assumed,
       "cycles of code, poly or mono, = this x (instructions . cost table); 1 takes the table as it is"));
+  table.push_back({"poly.vector_loads_overlap", "-", true, TrueOrFalse{}, Confidence::inferred,
+                   "vector loads go on beside vector arithmetic, the longer counts: a scoreboard orders them "
+                   "[S15e], and of "
+                   "3 read and 2 write ports [S8] a multiply-add leaves one write",
+                   &Field<group, &Poly::vector_loads_overlap>::read,
+                   &Field<group, &Poly::vector_loads_overlap>::write});
 }
 
 void declare_floating_point_cycles(Parameters& table) {
@@ -131,6 +137,27 @@ void declare_floating_point_cycles(Parameters& table) {
   table.push_back(cycles<InstructionClass::fp32_mul>(4, assumed, "float multiply; as fp32_add"));
   table.push_back(cycles<InstructionClass::fp32_div>(24, assumed, "float divide" + no_unit));
   table.push_back(cycles<InstructionClass::fp32_sqrt>(28, assumed, "float square root" + no_unit));
+}
+
+void declare_vector_cycles(Parameters& table) {
+  constexpr Confidence assumed = Confidence::assumed;
+  const std::string meaning =
+      " of a vector of 4: one element a cycle [reference, section 1: \"full rate only for 4-element vector "
+      "intrinsics\"]";
+  const std::string both =
+      " of a vector of 4: adder and multiplier work in the same clock, not fused [S7, S8]; one element a "
+      "cycle "
+      "[reference, section 1]";
+  table.push_back(cycles<InstructionClass::fp64_add_vector4>(4, assumed, "double add" + meaning));
+  table.push_back(cycles<InstructionClass::fp64_mul_vector4>(4, assumed, "double multiply" + meaning));
+  table.push_back(
+      cycles<InstructionClass::fp64_multiply_add_vector4>(4, assumed, "double multiply and add" + both));
+  table.push_back(cycles<InstructionClass::fp32_add_vector4>(
+      4, assumed, "float add" + meaning + "; the rate equals double's [S1]"));
+  table.push_back(
+      cycles<InstructionClass::fp32_mul_vector4>(4, assumed, "float multiply; as fp32_add_vector4"));
+  table.push_back(cycles<InstructionClass::fp32_multiply_add_vector4>(
+      4, assumed, "float multiply and add; as fp64_multiply_add_vector4"));
 }
 
 void declare_integer_cycles(Parameters& table) {
@@ -159,8 +186,15 @@ void declare_array_cycles(Parameters& table) {
       1, Confidence::assumed, "push, invert or pop of the enable stack [reference, section 9]"));
   table.push_back(cycles<InstructionClass::sram>(
       1, Confidence::inferred, "4-byte word between SRAM and registers: 96 GB/s [S5] / (96 PEs x 250 MHz)"));
+  table.push_back(cycles<InstructionClass::sram_vector_load>(
+      1, Confidence::inferred,
+      "4-byte word of a vector load; the same path as sram [S5], see poly.vector_loads_overlap"));
   table.push_back(cycles<InstructionClass::swazzle>(
       2, Confidence::assumed, "step of 8 bytes to the neighbouring PE [reference, section 9]"));
+  table.push_back(
+      cycles<InstructionClass::swazzle_vector4>(4, Confidence::assumed,
+                                                "step of 4 x 8 bytes to the neighbouring PE: 8 bytes a "
+                                                "cycle, the latency once [reference, section 1]"));
   table.push_back(cycles<InstructionClass::reduce>(
       10, Confidence::assumed, "test of all PEs that the control unit waits for (any, all, count)"));
   table.push_back(cycles<InstructionClass::mono>(
@@ -302,6 +336,7 @@ Parameters declare_parameters() {
   declare_chip(table);
   declare_poly(table);
   declare_floating_point_cycles(table);
+  declare_vector_cycles(table);
   declare_integer_cycles(table);
   declare_array_cycles(table);
   declare_control(table);
@@ -337,6 +372,7 @@ const std::vector<ParameterSource>& parameter_sources() {
       {"S11", "heise, ISC'08, CSX700"},
       {"S13", "Nishikawa et al., Performance Analysis of ClearSpeed's CSX600 Interconnects, ISPA 2009"},
       {"S13b", "Nishikawa et al., analytical network performance model of the CSX600, JSA 57(1), 2011"},
+      {"S15e", "US patent 7,802,079, scoreboard and enable stack"},
       {"S15g", "US patent 7,363,472, access indicators"},
       {"JESD79-2", "JEDEC, DDR2 SDRAM Specification"}};
   return sources;

@@ -8,6 +8,9 @@ namespace {
 
 constexpr auto kMono = std::size_t(cn::InstructionClass::mono);
 constexpr auto kSram = std::size_t(cn::InstructionClass::sram);
+constexpr auto kVectorLoad = std::size_t(cn::InstructionClass::sram_vector_load);
+constexpr auto kFirstVector = std::size_t(cn::InstructionClass::fp64_add_vector4);
+constexpr auto kLastVector = std::size_t(cn::InstructionClass::fp32_multiply_add_vector4);
 
 }  // namespace
 
@@ -15,12 +18,19 @@ PeArray::PeArray(const sc_core::sc_module_name& name, const ChipConfig& config)
     : sc_module(name),
       num_pes_(config.chip.pes),
       code_quality_factor_(config.poly.code_quality_factor),
+      vector_loads_overlap_(config.poly.vector_loads_overlap),
       cycles_(config.poly.cycles) {}
 
 double PeArray::poly_cycles(const cn::IssueCounts& counts) const {
   double sum = 0;
-  for (std::size_t i = 0; i < kMono; ++i) sum += double(counts.by_class[i]) * cycles_[i];
-  return sum;
+  double vector_arithmetic = 0;
+  for (std::size_t i = 0; i < kMono; ++i) {
+    const double cycles = double(counts.by_class[i]) * cycles_[i];
+    sum += cycles;
+    if (i >= kFirstVector && i <= kLastVector) vector_arithmetic += cycles;
+  }
+  const double vector_loads = double(counts.by_class[kVectorLoad]) * cycles_[kVectorLoad];
+  return vector_loads_overlap_ ? sum - std::min(vector_loads, vector_arithmetic) : sum;
 }
 
 PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
@@ -35,7 +45,9 @@ PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
   });
   const double poly = issue_cycles * code_quality_factor_;
   const double mono = double(counts.by_class[kMono]) * cycles_[kMono] * code_quality_factor_;
-  const double sram = double(counts.by_class[kSram]) * cycles_[kSram] * code_quality_factor_;
+  const double sram = (double(counts.by_class[kSram]) * cycles_[kSram] +
+                       double(counts.by_class[kVectorLoad]) * cycles_[kVectorLoad]) *
+                      code_quality_factor_;
   const Cost cost{static_cast<Cycles>(std::llround(std::max(poly, mono))),
                   static_cast<Cycles>(std::llround(sram))};
   ++statistics.runs;

@@ -39,7 +39,7 @@ class PeArray : public sc_core::sc_module {
   };
 
   /// Books a kernel and returns what it takes. Mono instructions go on beside poly ones through the issue
-  /// queue; the longer stream counts.
+  /// queue; the longer stream counts. So do vector loads beside vector arithmetic, if the chip overlaps them.
   Cost retire(const char* kernel, const cn::IssueTree& issued);
 
   const std::vector<KernelStatistics>& kernels() const { return kernels_; }
@@ -52,6 +52,7 @@ class PeArray : public sc_core::sc_module {
 
   int num_pes_;
   double code_quality_factor_;
+  bool vector_loads_overlap_;
   std::array<double, cn::kInstructionClasses> cycles_;
   std::vector<const char*> names_;  // string literals: compared by address
   std::vector<KernelStatistics> kernels_;

@@ -175,6 +175,16 @@ TEST(ParameterTable, DefaultsAreTheReferences) {
   EXPECT_EQ(cycles(InstructionClass::fp64_log), 90);
   EXPECT_EQ(cycles(InstructionClass::fp32_div), 24);
   EXPECT_EQ(cycles(InstructionClass::fp32_sqrt), 28);
+  // Four elements, one a cycle; multiplier and adder at once: 96 x 2 x f is the peak.
+  EXPECT_EQ(cycles(InstructionClass::fp64_add_vector4), 4);
+  EXPECT_EQ(cycles(InstructionClass::fp64_mul_vector4), 4);
+  EXPECT_EQ(96 * 8 / cycles(InstructionClass::fp64_multiply_add_vector4) * 250e6, 48e9);
+  EXPECT_EQ(cycles(InstructionClass::fp32_add_vector4), 4);
+  EXPECT_EQ(cycles(InstructionClass::fp32_mul_vector4), 4);
+  EXPECT_EQ(cycles(InstructionClass::fp32_multiply_add_vector4), 4);
+  EXPECT_EQ(cycles(InstructionClass::sram_vector_load), cycles(InstructionClass::sram));
+  EXPECT_EQ(cycles(InstructionClass::swazzle_vector4), 4 * 8 / 8);  // 8 bytes a PE and cycle
+  EXPECT_TRUE(config.poly.vector_loads_overlap);
   EXPECT_EQ(cycles(InstructionClass::int32_alu), 2);
   EXPECT_EQ(cycles(InstructionClass::int32_mul), 6);
   EXPECT_EQ(cycles(InstructionClass::enable), 1);

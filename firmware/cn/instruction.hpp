@@ -8,9 +8,10 @@
 
 namespace cn {
 
-/// Classes of poly instructions that differ in cost. `sram` counts 4-byte words, the width of the path
-/// between a PE's SRAM and its registers (shared reference: 96 GB/s = 4 B a PE and cycle); every other class
-/// counts instructions.
+/// Classes of poly instructions that differ in cost. `sram` and `sram_vector_load` count 4-byte words, the
+/// width of the path between a PE's SRAM and its registers (shared reference: 96 GB/s = 4 B a PE and cycle);
+/// every other class counts instructions. A vector instruction works on four variables of a PE, one after the
+/// other and without waiting for the latency in between (poly4.hpp).
 enum class InstructionClass : std::uint8_t {
   fp64_add,
   fp64_mul,
@@ -23,6 +24,12 @@ enum class InstructionClass : std::uint8_t {
   fp32_mul,
   fp32_div,
   fp32_sqrt,
+  fp64_add_vector4,
+  fp64_mul_vector4,
+  fp64_multiply_add_vector4,  // multiplier and adder in the same clocks; two roundings
+  fp32_add_vector4,
+  fp32_mul_vector4,
+  fp32_multiply_add_vector4,
   int16_alu,
   int32_alu,
   int64_alu,
@@ -33,17 +40,48 @@ enum class InstructionClass : std::uint8_t {
   convert,  // between number formats
   enable,   // push, invert or pop of the enable stack
   sram,
-  swazzle,  // one step along the PE-to-PE path
-  reduce,   // one test of all PEs by the control unit (any, all, count)
-  mono,     // an instruction of the control unit's own; overlaps poly work through the issue queue
+  sram_vector_load,  // goes on beside vector arithmetic
+  swazzle,           // one step along the PE-to-PE path
+  swazzle_vector4,   // the same, four variables behind each other
+  reduce,            // one test of all PEs by the control unit (any, all, count)
+  mono,              // an instruction of the control unit's own; overlaps poly work through the issue queue
 };
 
 inline constexpr std::size_t kInstructionClasses = static_cast<std::size_t>(InstructionClass::mono) + 1;
 
 inline constexpr std::array<std::string_view, kInstructionClasses> kInstructionClassNames = {
-    "fp64_add",  "fp64_mul", "fp64_div",  "fp64_sqrt", "fp64_sincos", "fp64_exp",  "fp64_log",  "fp32_add",
-    "fp32_mul",  "fp32_div", "fp32_sqrt", "int16_alu", "int32_alu",   "int64_alu", "int16_mul", "int32_mul",
-    "int64_mul", "move",     "convert",   "enable",    "sram",        "swazzle",   "reduce",    "mono"};
+    "fp64_add",
+    "fp64_mul",
+    "fp64_div",
+    "fp64_sqrt",
+    "fp64_sincos",
+    "fp64_exp",
+    "fp64_log",
+    "fp32_add",
+    "fp32_mul",
+    "fp32_div",
+    "fp32_sqrt",
+    "fp64_add_vector4",
+    "fp64_mul_vector4",
+    "fp64_multiply_add_vector4",
+    "fp32_add_vector4",
+    "fp32_mul_vector4",
+    "fp32_multiply_add_vector4",
+    "int16_alu",
+    "int32_alu",
+    "int64_alu",
+    "int16_mul",
+    "int32_mul",
+    "int64_mul",
+    "move",
+    "convert",
+    "enable",
+    "sram",
+    "sram_vector_load",
+    "swazzle",
+    "swazzle_vector4",
+    "reduce",
+    "mono"};
 
 /// How many instructions of each class were issued.
 struct IssueCounts {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/cn/kernel.hpp"
+#include "firmware/cn/level.hpp"
 #include "firmware/path_tracer/program.hpp"
 
 /// The poly programs of the path tracer: their arguments and the table of entry points. Poly pointers name
@@ -9,6 +10,7 @@
 namespace path_tracer {
 
 using cn::LaneMask;
+using cn::Level;
 using cn::MonoAddress;
 using cn::PolyField;
 using cn::PolyPointer;
@@ -141,9 +143,6 @@ struct Kernels {
   cn::Kernel<ListArguments> list;
   cn::Kernel<FoldArguments> fold;
 };
-
-/// Levels of the x86-64 instruction set that the kernels are built for; the same bits come from each.
-enum class Level : std::uint8_t { x86_64_v2, x86_64_v3, x86_64_v4 };
 
 const Kernels& kernels(Level level);
 

@@ -26,16 +26,20 @@ FilmSize parse_film_size(const std::string& text) {
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
-void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {
-  chip_ = default_chip;
-  command.add_option("--chip", chip_, "Preset or .toml file (see `csx600 params`)")->capture_default_str();
+void SetOptions::add_to(CLI::App& command) {
   command.add_option("--set", settings_, "One parameter, key=value; may be repeated")
       ->allow_extra_args(false);
 }
 
-model::ChipConfig ChipOptions::chip() const {
+void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {
+  chip_ = default_chip;
+  command.add_option("--chip", chip_, "Preset or .toml file (see `csx600 params`)")->capture_default_str();
+  settings_.add_to(command);
+}
+
+model::ChipConfig SetOptions::chip(const std::string& name) const {
   try {
-    model::ChipConfig config = model::load_chip(chip_);
+    model::ChipConfig config = model::load_chip(name);
     for (const std::string& setting : settings_) {
       const std::size_t equals = setting.find('=');
       if (equals == std::string::npos)

@@ -12,17 +12,27 @@ namespace testbench {
 
 /// --size, "480x480". Throws InputError.
 FilmSize parse_film_size(const std::string& text);
+/// --set.
+class SetOptions {
+ public:
+  void add_to(CLI::App& command);
+  /// A preset or file with the settings. Throws InputError.
+  model::ChipConfig chip(const std::string& name) const;
+
+ private:
+  std::vector<std::string> settings_;
+};
 
 /// --chip and --set.
 class ChipOptions {
  public:
   void add_to(CLI::App& command, const std::string& default_chip);
   /// Throws InputError.
-  model::ChipConfig chip() const;
+  model::ChipConfig chip() const { return settings_.chip(chip_); }
 
  private:
   std::string chip_;
-  std::vector<std::string> settings_;
+  SetOptions settings_;
 };
 
 /// --level: which build of the kernels runs; the bits are the same from each.

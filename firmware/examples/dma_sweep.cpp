@@ -1,0 +1,31 @@
+#include "firmware/examples/dma_sweep.hpp"
+
+#include "firmware/examples/mono_cost.hpp"
+
+namespace examples {
+
+DmaSweep::DmaSweep(cn::Machine& machine, int largest_bytes)
+    : machine_(machine),
+      buffer_(machine.poly_memory().allocate("piece", largest_bytes)),
+      done_(machine.allocate_semaphore("done")) {}
+
+void DmaSweep::load(const Pattern& pattern, int repeats) {
+  for (int i = 0; i < repeats; ++i) {
+    machine_.issue_mono(kRequestInstructions);
+    machine_.async_copy_m2p(done_, piece(pattern),
+                            cn::MonoPlaces::array(pattern.address, pattern.stride_bytes),
+                            cn::LaneMask::first(pattern.pes));
+    machine_.sem_wait(done_);
+  }
+}
+
+void DmaSweep::save(const Pattern& pattern, int repeats) {
+  for (int i = 0; i < repeats; ++i) {
+    machine_.issue_mono(kRequestInstructions);
+    machine_.async_copy_p2m(done_, cn::MonoPlaces::array(pattern.address, pattern.stride_bytes),
+                            piece(pattern), cn::LaneMask::first(pattern.pes));
+    machine_.sem_wait(done_);
+  }
+}
+
+}  // namespace examples

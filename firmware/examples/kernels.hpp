@@ -1,0 +1,82 @@
+#pragma once
+
+#include "firmware/cn/kernel.hpp"
+#include "firmware/cn/level.hpp"
+#include "firmware/cn/mono_memory.hpp"
+#include "firmware/cn/poly4.hpp"
+
+/// Small programs that show other uses of the chip than ray tracing. Here: what their poly programs are
+/// given.
+namespace examples {
+
+using cn::PolyArray;
+using cn::PolyField;
+using cn::PolyPointer;
+
+/// C += A B for the block that each PE holds.
+struct MultiplyBlockArguments {
+  PolyArray<double> a;        ///< depth columns of `rows`
+  const double* b = nullptr;  ///< mono: depth rows of `columns`
+  PolyArray<double> c;        ///< columns of `rows`
+  int rows = 0;               ///< a multiple of 4
+  int columns = 0;            ///< a multiple of 3
+  int depth = 0;
+  bool first = false;  ///< C starts from zero
+};
+
+struct SeedRandomArguments {
+  PolyField<std::uint32_t> word[3];
+  std::uint32_t seed = 0;
+};
+
+/// Payoffs of a European call option whose price follows a geometric Brownian motion.
+struct SamplePayoffsArguments {
+  PolyField<std::uint32_t> word[3];
+  PolyField<double> sum;
+  int pairs = 0;  ///< of samples
+  double spot = 0;
+  double strike = 0;
+  double drift = 0;      ///< (rate - volatility^2 / 2) maturity
+  double diffusion = 0;  ///< volatility sqrt(maturity)
+};
+
+/// A complex number as SRAM and mono memory hold it.
+struct Complex {
+  float real = 0;
+  float imaginary = 0;
+};
+
+/// One step of the FFT on 256 complex numbers a PE.
+struct FftArguments {
+  PolyArray<std::uint64_t> data;
+  PolyArray<std::uint64_t> scratch;   ///< half as long
+  const Complex* twiddles = nullptr;  ///< mono: exp(-2 pi i k / 512), k = 0..255
+  bool decimate_in_time = false;      ///< else in frequency
+  int half = 0;                       ///< 0 or 1, of steps that need scratch for all data
+  int pe_bit = 0;                     ///< exchange: of the PE's number
+  int index_bit = 0;                  ///< exchange: of the index in `data`
+};
+
+/// Byte offsets of each PE's piece in the FFT's mono arrays.
+struct FftPlacesArguments {
+  PolyField<cn::MonoAddress> tile_save;
+  PolyField<cn::MonoAddress> tile_load;
+  PolyField<cn::MonoAddress> result;
+};
+
+struct Kernels {
+  cn::Kernel<MultiplyBlockArguments> multiply_block;
+  cn::Kernel<SeedRandomArguments> seed_random;
+  cn::Kernel<SamplePayoffsArguments> sample_payoffs;
+  cn::Kernel<FftPlacesArguments> fft_places;
+  cn::Kernel<FftArguments> fft_local;
+  cn::Kernel<FftArguments> fft_twiddle;
+  cn::Kernel<FftArguments> fft_pair;
+  cn::Kernel<FftArguments> fft_pair_store;
+  cn::Kernel<FftArguments> fft_exchange;
+  cn::Kernel<FftArguments> fft_exchange_store;
+};
+
+const Kernels& kernels(cn::Level level);
+
+}  // namespace examples

@@ -1,0 +1,21 @@
+#include "firmware/examples/kernels.hpp"
+
+namespace examples {
+
+const Kernels& kernels_x86_64_v2();
+const Kernels& kernels_x86_64_v3();
+const Kernels& kernels_x86_64_v4();
+
+const Kernels& kernels(cn::Level level) {
+  switch (level) {
+    case cn::Level::x86_64_v4:
+      return kernels_x86_64_v4();
+    case cn::Level::x86_64_v3:
+      return kernels_x86_64_v3();
+    case cn::Level::x86_64_v2:
+      break;
+  }
+  return kernels_x86_64_v2();
+}
+
+}  // namespace examples

@@ -1,0 +1,57 @@
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/command_options.hpp"
+#include "testbench/commands/commands.hpp"
+#include "testbench/progress_bar.hpp"
+#include "testbench/validation.hpp"
+
+namespace testbench {
+namespace {
+
+struct ValidateCommand {
+  SetOptions settings;
+  LevelOption level;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::string json;
+  std::string csv;
+
+  void run() const {
+    if (!json.empty()) require_writable(json);
+    if (!csv.empty()) require_writable(csv);
+    ValidationOptions options;
+    options.chip = [this](const std::string& preset) { return settings.chip(preset); };
+    options.level = level.level();
+    options.jobs = jobs;
+    Validation validation;
+    {
+      ProgressBar bar("validate");
+      validation = validate(options, [&](double share) { bar.show(share); });
+    }
+    std::fputs(validation_text(validation).c_str(), stdout);
+    if (!json.empty()) write_bytes_atomically(json, to_json(validation).dump(2) + "\n");
+    if (!csv.empty()) write_bytes_atomically(csv, validation_csv(validation));
+  }
+};
+
+}  // namespace
+
+void add_validate_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand(
+      "validate",
+      "Run DGEMM, Monte Carlo, FFT and DMA sweeps and print published figures beside the model's");
+  const auto state = std::make_shared<ValidateCommand>();
+  state->settings.add_to(command);
+  state->level.add_to(command);
+  command.add_option("--jobs", state->jobs, "Runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command.add_option("--json", state->json, "Also write figures, cycles and bandwidths to this file");
+  command.add_option("--csv", state->csv, "Also write the figures to this file");
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

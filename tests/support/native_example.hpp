@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "testbench/error.hpp"
+#include "testbench/example_runs.hpp"
+#include "testbench/native_machine.hpp"
+
+namespace test_support {
+
+/// Mono memory after a run without a clock.
+inline std::vector<std::uint8_t> run_natively(const testbench::ExampleRun& run, int num_pes) {
+  testbench::NativeMachine machine(num_pes, 6144, run.mono.size());
+  std::memcpy(machine.mono(), run.mono.data(), run.mono.size());
+  run.firmware(machine);
+  return {machine.mono(), machine.mono() + machine.mono_bytes()};
+}
+
+/// The levels this machine executes.
+inline std::vector<cn::Level> levels() {
+  std::vector<cn::Level> all = {cn::Level::x86_64_v2};
+  if (__builtin_cpu_supports("x86-64-v3")) all.push_back(cn::Level::x86_64_v3);
+  if (__builtin_cpu_supports("x86-64-v4")) all.push_back(cn::Level::x86_64_v4);
+  return all;
+}
+
+/// What `run.check` says of `mono`; empty when it is right.
+inline std::string verdict(const testbench::ExampleRun& run, const std::vector<std::uint8_t>& mono) {
+  try {
+    run.check(mono.data());
+    return {};
+  } catch (const testbench::RunError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace test_support

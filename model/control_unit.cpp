@@ -23,7 +23,7 @@ Cycles ControlStatistics::exposed_pio() const {
 }
 
 ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config,
-                         const ClockDomain& clock, PeArray& pe_array)
+                         const ClockDomain& clock, PeArray& pe_array, Agenda* agenda)
     : sc_module(name),
       Machine(config.chip.pes, config.poly.sram_bytes),
       config_(config),
@@ -34,6 +34,10 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       line_(std::size_t(config.control.cache_line_bytes)) {
   semaphores.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &ControlUnit::forget_mono_pointer);
+  if (agenda != nullptr) {
+    at_transport_ = std::make_unique<AtTransport>(*agenda, mono_socket);
+    mono_socket.register_nb_transport_bw(this, &ControlUnit::nb_transport_bw);
+  }
   SC_HAS_PROCESS(ControlUnit);
   SC_THREAD(run);
   set_stack_size(kFirmwareStackBytes);
@@ -246,13 +250,24 @@ void ControlUnit::send(cn::MonoAddress address, std::uint8_t* data, std::size_t 
   transaction_.set_byte_enable_ptr(nullptr);
   transaction_.set_dmi_allowed(false);
   transaction_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-  sc_core::sc_time delay = delay_until(clock_, now_);
-  mono_socket->b_transport(transaction_, delay);
+  const Cycles over = transport();
   if (transaction_.is_response_error())
     throw cn::MachineFault("mono access of " + std::to_string(size) + " bytes at " + std::to_string(address) +
                            ": " + transaction_.get_response_string());
   spend(CycleCause::data_cache,
-        cycle_of_delay(clock_, delay) - now_ + Cycles(config_.control.cache_miss_cycles));
+        over - now_ + Cycles(config_.control.cache_miss_cycles));
+}
+
+tlm::tlm_sync_enum ControlUnit::nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                                sc_core::sc_time& delay) {
+  return at_transport_->nb_transport_bw(payload, phase, delay);
+}
+
+Cycles ControlUnit::transport() {
+  if (at_transport_) return at_transport_->transport(transaction_);
+  sc_core::sc_time delay = delay_until(clock_, now_);
+  mono_socket->b_transport(transaction_, delay);
+  return cycle_of_delay(clock_, delay);
 }
 
 }  // namespace model

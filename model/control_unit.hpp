@@ -4,10 +4,12 @@
 #include <array>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <systemc>
 #include <tlm>
 
 #include "firmware/cn/machine.hpp"
+#include "model/at_transport.hpp"
 #include "model/chip_config.hpp"
 #include "model/clock_domain.hpp"
 #include "model/control_observer.hpp"
@@ -34,7 +36,9 @@ struct ControlStatistics {
 
 /// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on SystemC's only
 /// firmware process and runs ahead by a local cycle count; it synchronises with SystemC time where the host
-/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it.
+/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it. With an agenda it
+/// is approximately timed: the PIO port lets time pass at each request, semaphore wait and kernel end, and mono
+/// accesses are transactions of four phases.
 class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort {
  public:
   sc_core::sc_port<PioPort> pio{"pio"};
@@ -44,7 +48,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   using Firmware = std::function<void(cn::Machine&)>;
 
   ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-              PeArray& pe_array);
+              PeArray& pe_array, Agenda* agenda = nullptr);
 
   /// What runs from `start()` on.
   void load(Firmware firmware) { firmware_ = std::move(firmware); }
@@ -100,6 +104,10 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void forget_mono_pointer(sc_dt::uint64 start, sc_dt::uint64 end);
   void fetch_line(cn::MonoAddress line);
   void send(cn::MonoAddress address, std::uint8_t* data, std::size_t size);
+  /// Sends transaction_ at now_; returns when it is over.
+  Cycles transport();
+  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay);
 
   const ChipConfig& config_;
   ClockDomain clock_;
@@ -107,6 +115,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   SemaphoreFile semaphore_file_;
   DataCache data_cache_;
   MonoWindow mono_window_;
+  std::unique_ptr<AtTransport> at_transport_;
   tlm::tlm_generic_payload transaction_;
   std::vector<std::uint8_t> line_;
   std::array<bool, kSemaphores> waits_for_save_{};  ///< direction of the latest transfer that signals it

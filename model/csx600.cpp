@@ -1,17 +1,25 @@
 #include "model/csx600.hpp"
 
 namespace model {
+namespace {
 
-Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config)
+std::unique_ptr<Agenda> agenda_for(TimingStyle timing, const ClockDomain& clock) {
+  return timing == TimingStyle::approximately_timed ? std::make_unique<Agenda>("agenda", clock) : nullptr;
+}
+
+}  // namespace
+
+Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, TimingStyle timing)
     : sc_module(name),
       config_(config),
       clock(config.chip.clock_hz),
+      agenda(agenda_for(timing, clock)),
       pe_array("pe_array", config_),
-      control_unit("control_unit", config_, clock, pe_array),
+      control_unit("control_unit", config_, clock, pe_array, agenda.get()),
       poly_sram("poly_sram", config_, control_unit.poly_memory()),
-      dma_engine("dma_engine", config_, clock, control_unit.poly_memory()),
-      clear_connect("clear_connect", config_, clock),
-      mono_ddr("mono_ddr", config_, clock),
+      dma_engine("dma_engine", config_, clock, control_unit.poly_memory(), agenda.get()),
+      clear_connect("clear_connect", config_, clock, agenda.get()),
+      mono_ddr("mono_ddr", config_, clock, agenda.get()),
       host_link("host_link", config_) {
   control_unit.pio.bind(dma_engine.port);
   control_unit.mono_socket.bind(clear_connect.control_socket);

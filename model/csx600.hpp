@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <systemc>
 
 #include "model/chip_config.hpp"
@@ -11,6 +12,7 @@
 #include "model/mono_ddr.hpp"
 #include "model/pe_array.hpp"
 #include "model/poly_sram.hpp"
+#include "model/timing_style.hpp"
 
 namespace model {
 
@@ -23,13 +25,15 @@ namespace model {
 ///        host_link ---------------------+
 class Csx600 : public sc_core::sc_module {
  public:
-  Csx600(const sc_core::sc_module_name& name, const ChipConfig& config);
+  explicit Csx600(const sc_core::sc_module_name& name, const ChipConfig& config,
+                  TimingStyle timing = TimingStyle::loosely_timed);
 
  private:
   ChipConfig config_;
 
  public:
   const ClockDomain clock;
+  const std::unique_ptr<Agenda> agenda;  ///< approximately timed only
   PeArray pe_array;
   ControlUnit control_unit;
   PolySram poly_sram;

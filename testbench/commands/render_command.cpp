@@ -25,6 +25,7 @@ struct RenderCommand {
   std::string size;
   RenderOptions options;
   ChipOptions chip;
+  TimingOption timing;
   LevelOption level;
   std::string program = "full";
   std::string buffer = "both";
@@ -103,6 +104,7 @@ RenderRequest RenderCommand::make_request() const {
   RenderRequest request{scene, options, native};
   request.options.program.program = program_named(program);
   request.options.chip = chip.chip();
+  request.options.timing = timing.style();
   request.options.level = level.level();
   request.options.program.buffer_loads = buffer == "both" || buffer == "loads";
   request.options.program.buffer_saves = buffer == "both" || buffer == "saves";
@@ -195,6 +197,7 @@ void add_render_command(CLI::App& app) {
   command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
   add_firmware_options(command, *state);
   state->chip.add_to(command, "csx600");
+  state->timing.add_to(command);
   state->level.add_to(command);
   command.add_flag("--native", state->native, "Run the firmware without SystemC: same image, no time");
   command.add_option("--exr", state->exr, "Write the image as OpenEXR");

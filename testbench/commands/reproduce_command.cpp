@@ -31,6 +31,7 @@ struct Cell {
 struct ReproduceCommand {
   std::string scene = "scenes/cornell_box";
   ChipOptions chip;
+  TimingOption timing;
   LevelOption level;
   int samples = 4;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -135,6 +136,7 @@ void ReproduceCommand::run() const {
   if (!json.empty()) require_writable(json);
   RenderOptions options;
   options.chip = chip.chip();
+  options.timing = timing.style();
   options.level = level.level();
   options.work.samples = samples;
   const Scene loaded = load_scene(scene);
@@ -157,6 +159,7 @@ void add_reproduce_command(CLI::App& app) {
   const auto state = std::make_shared<ReproduceCommand>();
   command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
   state->chip.add_to(command, "paper");
+  state->timing.add_to(command);
   state->level.add_to(command);
   command.add_option("--samples", state->samples, "Paths a pixel")
       ->check(CLI::Range(1, 1 << 20))

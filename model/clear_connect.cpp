@@ -36,6 +36,8 @@ void ClearConnect::register_socket(tlm_utils::simple_target_socket_tagged<ClearC
 
 void ClearConnect::b_transport(int initiator, tlm::tlm_generic_payload& transaction,
                                sc_core::sc_time& delay) {
+  if (initiator != int(Initiator::host) && host_traffic.size() > 0)
+    host_traffic->book_until(cycle_of_delay(clock_, delay));
   Load load{transaction.is_write(), 0, 0};
   if (transaction.is_read() || transaction.is_write()) {
     load.bytes = transaction.get_data_length();

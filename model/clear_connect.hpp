@@ -11,6 +11,7 @@
 #include "model/chip_config.hpp"
 #include "model/clear_connect_timing.hpp"
 #include "model/clock_domain.hpp"
+#include "model/host_traffic.hpp"
 
 namespace model {
 
@@ -24,6 +25,8 @@ class ClearConnect : public sc_core::sc_module {
   tlm_utils::simple_target_socket_tagged<ClearConnect> control_socket{"control_socket"};
   tlm_utils::simple_target_socket_tagged<ClearConnect> host_socket{"host_socket"};
   tlm_utils::simple_initiator_socket<ClearConnect> ddr_socket{"ddr_socket"};
+
+  HostTrafficPort host_traffic{"host_traffic"};
 
   ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
                Agenda* agenda = nullptr);

@@ -14,6 +14,7 @@
 #include "model/clock_domain.hpp"
 #include "model/control_observer.hpp"
 #include "model/data_cache.hpp"
+#include "model/host_traffic.hpp"
 #include "model/mono_window.hpp"
 #include "model/pe_array.hpp"
 #include "model/pio_port.hpp"
@@ -44,6 +45,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   sc_core::sc_port<PioPort> pio{"pio"};
   sc_core::sc_export<SemaphorePort> semaphores{"semaphores"};
   tlm_utils::simple_initiator_socket<ControlUnit> mono_socket{"mono_socket"};
+
+  HostTrafficPort host_traffic{"host_traffic"};
 
   using Firmware = std::function<void(cn::Machine&)>;
 
@@ -99,6 +102,12 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void wait_for_signal(cn::Semaphore semaphore);
   void wait_for_host(cn::Semaphore semaphore);
   void wait_for_host_event();
+  void wait_until(Cycles cycle);
+  bool host_is_transferring() const { return host_traffic.size() > 0 && host_traffic->in_progress(); }
+  /// Settles the PIO engine up to `cycle`; does not run ahead of the host while that uses the network.
+  void settle_pio(Cycles cycle);
+  bool serve_next_request();
+  void report_begin(CycleCause cause, int semaphore = -1);
   void synchronise();
   void synchronise_for_observer();
   void forget_mono_pointer(sc_dt::uint64 start, sc_dt::uint64 end);

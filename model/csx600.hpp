@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <systemc>
 
@@ -16,6 +17,12 @@
 
 namespace model {
 
+/// What mono memory is.
+enum class MonoMemory : std::uint8_t {
+  ddr,            ///< MonoDdr
+  bound_outside,  ///< any TLM-2.0 target of ddr.size_bytes, bound to clear_connect.ddr_socket before the run
+};
+
 /// One ClearSpeed CSX600 with its DDR2 and its link to the host.
 ///
 ///   control_unit --port--> dma_engine --+
@@ -26,7 +33,7 @@ namespace model {
 class Csx600 : public sc_core::sc_module {
  public:
   explicit Csx600(const sc_core::sc_module_name& name, const ChipConfig& config,
-                  TimingStyle timing = TimingStyle::loosely_timed);
+                  TimingStyle timing = TimingStyle::loosely_timed, MonoMemory memory = MonoMemory::ddr);
 
  private:
   ChipConfig config_;
@@ -39,10 +46,12 @@ class Csx600 : public sc_core::sc_module {
   PolySram poly_sram;
   DmaEngine dma_engine;
   ClearConnect clear_connect;
-  MonoDdr mono_ddr;
+  const std::unique_ptr<MonoDdr> mono_ddr;  ///< none if the memory is bound outside
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }
+  /// All zero if the memory is bound outside.
+  DdrStatistics ddr_statistics() const { return mono_ddr ? mono_ddr->statistics() : DdrStatistics{}; }
 };
 
 }  // namespace model

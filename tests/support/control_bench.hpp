@@ -60,7 +60,7 @@ class ControlBench : public SystemCFixture {
 
   const model::ControlStatistics& statistics() const { return chip->control_unit.statistics(); }
   model::Cycles spent(model::CycleCause cause) const { return statistics()[cause]; }
-  std::uint8_t* mono() { return chip->mono_ddr.memory().data(); }
+  std::uint8_t* mono() { return chip->mono_ddr->memory().data(); }
 
   /// 8 x 32 bytes without gaps: 100 setup + 8 x (10 + 4) = 212 cycles in the engine, either way.
   static constexpr model::Cycles kRequestCycles = 212;

@@ -12,6 +12,7 @@ Agenda::Agenda(const sc_core::sc_module_name& name, const ClockDomain& clock)
   SC_METHOD(run);
   sensitive << wake_;
   dont_initialize();
+  for (std::vector<Task>& tasks : near_) tasks.reserve(kUsualTasks);
 }
 
 Cycles Agenda::cycle_after(const sc_core::sc_time& delay) const {
@@ -24,26 +25,69 @@ sc_core::sc_time Agenda::delay_until(Cycles cycle) const {
 }
 
 void Agenda::at(Cycles cycle, Task task) {
-  entries_.push_back({cycle, asked_++, std::move(task)});
-  std::push_heap(entries_.begin(), entries_.end(), later);
-  if (!running_) wake_for_next();
+  if (entries_ == 0 && !running_) first_ = std::max(first_, now());
+  cycle = std::max(cycle, first_);
+  ++entries_;
+  if (cycle - first_ < kNear) {
+    const std::size_t list = cycle % kNear;
+    near_[list].push_back(std::move(task));
+    near_filled_[list / 64] |= std::uint64_t{1} << (list % 64);
+  } else {
+    far_.push_back({cycle, asked_++, std::move(task)});
+    std::push_heap(far_.begin(), far_.end(), later);
+  }
+  // Of several notifications SystemC keeps the earliest.
+  if (!running_) wake_.notify(delay_until(cycle));
 }
 
 void Agenda::run() {
   running_ = true;
-  while (!entries_.empty() && clock_.time_at(entries_.front().cycle) <= sc_core::sc_time_stamp()) {
-    std::pop_heap(entries_.begin(), entries_.end(), later);
-    const Task task = std::move(entries_.back().task);
-    entries_.pop_back();
-    task();
+  while (entries_ > 0) {
+    const Cycles next = next_cycle();
+    if (clock_.time_at(next) > sc_core::sc_time_stamp()) break;
+    first_ = next;
+    do_tasks_of(next);
   }
   running_ = false;
-  if (!entries_.empty()) wake_for_next();
+  if (entries_ > 0) wake_.notify(delay_until(next_cycle()));
 }
 
-/// Of several notifications SystemC keeps the earliest.
-void Agenda::wake_for_next() {
-  wake_.notify(delay_until(entries_.front().cycle));
+Cycles Agenda::next_cycle() const {
+  const Cycles near = next_near_cycle();
+  return far_.empty() ? near : std::min(near, far_.front().cycle);
+}
+
+Cycles Agenda::next_near_cycle() const {
+  const std::size_t start = first_ % kNear;
+  for (std::size_t i = 0; i <= near_filled_.size(); ++i) {
+    const std::size_t word = (start / 64 + i) % near_filled_.size();
+    std::uint64_t bits = near_filled_[word];
+    if (i == 0) bits &= ~std::uint64_t{0} << (start % 64);
+    if (bits == 0) continue;
+    const std::size_t list = word * 64 + std::size_t(__builtin_ctzll(bits));
+    return first_ + (list + kNear - start) % kNear;
+  }
+  return ~Cycles{0};
+}
+
+/// Tasks may ask for further ones in the same cycle.
+void Agenda::do_tasks_of(Cycles cycle) {
+  while (!far_.empty() && far_.front().cycle == cycle) {
+    std::pop_heap(far_.begin(), far_.end(), later);
+    const Task task = std::move(far_.back().task);
+    far_.pop_back();
+    --entries_;
+    task();
+  }
+  const std::size_t list = cycle % kNear;
+  std::vector<Task>& tasks = near_[list];
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const Task task = std::move(tasks[i]);
+    --entries_;
+    task();
+  }
+  tasks.clear();
+  near_filled_[list / 64] &= ~(std::uint64_t{1} << (list % 64));
 }
 
 void Agenda::pass_time_until(Cycles cycle) {

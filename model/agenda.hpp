@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <systemc>
@@ -31,22 +32,33 @@ class Agenda : public sc_core::sc_module {
   void pass_time_until(const sc_core::sc_event& event);
 
  private:
-  struct Entry {
+  /// Of what lies within so many cycles each cycle has a list of its own; a power of two.
+  static constexpr Cycles kNear = 256;
+  static constexpr std::size_t kUsualTasks = 16;  ///< of a cycle at most; more are allocated
+  struct FarEntry {
     Cycles cycle;
     std::uint64_t number;
     Task task;
   };
   /// Of two entries, which comes later: std's heaps put the largest first.
-  static bool later(const Entry& a, const Entry& b) {
+  static bool later(const FarEntry& a, const FarEntry& b) {
     return a.cycle != b.cycle ? a.cycle > b.cycle : a.number > b.number;
   }
 
   void run();
+  /// The next cycle that has entries; there must be one.
+  Cycles next_cycle() const;
+  Cycles next_near_cycle() const;
+  void do_tasks_of(Cycles cycle);
   void wake_for_next();
   static void come_last();
 
   ClockDomain clock_;
-  std::vector<Entry> entries_;  ///< a heap
+  Cycles first_ = 0;  ///< entries of cycles before are over
+  std::array<std::vector<Task>, kNear> near_;
+  std::array<std::uint64_t, kNear / 64> near_filled_{};  ///< a bit a list
+  std::vector<FarEntry> far_;                            ///< a heap; was asked for before what is near
+  std::size_t entries_ = 0;
   std::uint64_t asked_ = 0;
   bool running_ = false;
   sc_core::sc_event wake_;

@@ -2,9 +2,14 @@
 
 namespace model {
 
-void AtInitiator::send(tlm::tlm_generic_payload& payload) {
+bool AtInitiator::send(tlm::tlm_generic_payload& payload) {
+  if (in_request_ == nullptr && waiting_.empty() && !in_call_of_target_) {
+    begin_request(payload);
+    return true;
+  }
   waiting_.push_back(&payload);
   send_next();
+  return false;
 }
 
 /// By way of the agenda, so that no request is sent from within a target's own call.
@@ -27,7 +32,11 @@ void AtInitiator::begin_request(tlm::tlm_generic_payload& payload) {
   const tlm::tlm_sync_enum answer = socket_->nb_transport_fw(payload, phase, delay);
   if (answer == tlm::TLM_ACCEPTED) return;
   if (answer == tlm::TLM_UPDATED && phase == tlm::END_REQ) {
-    agenda_.at(agenda_.cycle_after(delay), [this] { end_request(); });
+    if (delay == sc_core::SC_ZERO_TIME) {
+      end_request();
+    } else {
+      agenda_.at(agenda_.cycle_after(delay), [this] { end_request(); });
+    }
   } else if (answer == tlm::TLM_UPDATED) {
     agenda_.at(agenda_.cycle_after(delay), [this, &payload] { take_delayed_response(payload); });
   } else {  // TLM_COMPLETED: the target skips all further phases
@@ -47,7 +56,9 @@ tlm::tlm_sync_enum AtInitiator::nb_transport_bw(tlm::tlm_generic_payload& payloa
     return tlm::TLM_ACCEPTED;
   }
   payload.acquire();  // the owner may release it before the response is over
+  in_call_of_target_ = true;
   const Cycles over = take_response(payload);
+  in_call_of_target_ = false;
   if (over > agenda_.now()) {
     agenda_.at(over, [this, &payload] { end_response(payload); });
     return tlm::TLM_ACCEPTED;

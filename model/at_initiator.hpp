@@ -10,15 +10,16 @@
 namespace model {
 
 /// The initiator's side of the base protocol on one socket (IEEE 1666-2011, 15.2): sends requests one after
-/// the other, each when the target has ended the one before (END_REQ, or BEGIN_RESP that implies it), and ends
-/// responses. Any number of transactions may be between request and response; its owner bounds them.
+/// the other, each when the target has ended the one before (END_REQ, or BEGIN_RESP that implies it), and
+/// ends responses. Any number of transactions may be between request and response; its owner bounds them.
 class AtInitiator {
  public:
   struct Owner {
-    /// BEGIN_REQ has gone out in this cycle.
+    /// BEGIN_REQ has gone out in this cycle, of a payload that had to wait.
     std::function<void(tlm::tlm_generic_payload&)> sent;
     /// BEGIN_RESP has come. Returns the cycle at which the response is over: this one, or a later one while
-    /// the owner is busy (the target cannot begin another response before). The owner may release the payload.
+    /// the owner is busy (the target cannot begin another response before). The owner may release the
+    /// payload.
     std::function<Cycles(tlm::tlm_generic_payload&)> responded;
   };
 
@@ -27,8 +28,9 @@ class AtInitiator {
   AtInitiator(const AtInitiator&) = delete;
   AtInitiator& operator=(const AtInitiator&) = delete;
 
-  /// Of a payload with a memory manager, which the owner keeps alive until it has been responded to.
-  void send(tlm::tlm_generic_payload& payload);
+  /// Of a payload with a memory manager, which the owner keeps alive until it has been responded to. Returns
+  /// true if BEGIN_REQ has gone out; else it will when the request before has ended.
+  bool send(tlm::tlm_generic_payload& payload);
   /// Requests that wait for the one before.
   std::size_t waiting() const { return waiting_.size(); }
 
@@ -51,6 +53,7 @@ class AtInitiator {
   std::vector<tlm::tlm_generic_payload*> waiting_;
   tlm::tlm_generic_payload* in_request_ = nullptr;
   bool send_asked_ = false;
+  bool in_call_of_target_ = false;
 };
 
 }  // namespace model

@@ -8,8 +8,9 @@ AtPio::AtPio(Agenda& agenda, tlm::tlm_initiator_socket<>& memory, const ChipConf
              const PioTiming& timing, MonoWindow& mono, Owner owner)
     : agenda_(agenda),
       memory_(memory),
-      initiator_(agenda, memory,
-                 {[this](auto& packet) { sent(packet); }, [this](auto& packet) { return responded(packet); }}),
+      initiator_(
+          agenda, memory,
+          {[this](auto& packet) { sent(packet); }, [this](auto& packet) { return responded(packet); }}),
       timing_(timing),
       mono_(mono),
       owner_(std::move(owner)),
@@ -36,14 +37,12 @@ void AtPio::send_packets(int index) {
   Engine& engine = engines_[std::size_t(index)];
   for (; packet_is_due(engine) && room(); engine.next_to_send.advance()) {
     const PacketCursor::Packet& next = engine.next_to_send.packet();
-    tlm::tlm_generic_payload& packet =
-        pool_.take(engine.pieces->write() ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND, next.address,
-                   next.bytes);
+    tlm::tlm_generic_payload& packet = pool_.take(
+        engine.pieces->write() ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND, next.address, next.bytes);
     if (engine.pieces->write())
       mono_.read(next.address, packet.get_data_ptr(), next.bytes, *memory_.operator->());
     on_the_way_.push_back({&packet, index});
-    ++engine.unsent;
-    initiator_.send(packet);
+    if (!initiator_.send(packet)) ++engine.unsent;
   }
 }
 

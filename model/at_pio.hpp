@@ -18,12 +18,13 @@ namespace model {
 /// How the PIO engines serve requests approximately timed: one transaction a packet of mono memory, so that
 /// other initiators get in between, and each sent when the engine has come to its PE.
 ///
-/// An engine does one thing at a time, for as long as PioTiming says: setup, then PE by PE the address phase and
-/// the data phase.
+/// An engine does one thing at a time, for as long as PioTiming says: setup, then PE by PE the address phase
+/// and the data phase.
 /// - Read: packets leave after the address phase of the first PE that they hold data for, at most
-///   pio.outstanding_packets at a time. The engine takes further addresses as long as it may send their packets,
-///   and writes data into a PE when they have arrived. The request is over with the last PE's data.
-/// - Write: address and data phase of a PE follow each other; a packet leaves when its last byte has come out of
+///   pio.outstanding_packets at a time. The engine takes further addresses as long as it may send their
+///   packets, and writes data into a PE when they have arrived. The request is over with the last PE's data.
+/// - Write: address and data phase of a PE follow each other; a packet leaves when its last byte has come out
+/// of
 ///   a PE. Posted: the request is over when its last packet has left the engine.
 ///
 /// Data have moved when the request was queued; packets carry them once more. A write that is on the way is
@@ -35,8 +36,8 @@ class AtPio {
     std::function<void(const tlm::tlm_generic_payload&)> failed;  ///< memory answered with an error
   };
 
-  AtPio(Agenda& agenda, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config, const PioTiming& timing,
-        MonoWindow& mono, Owner owner);
+  AtPio(Agenda& agenda, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
+        const PioTiming& timing, MonoWindow& mono, Owner owner);
 
   /// `pieces` must last until the engine has finished.
   void start(int engine, const MonoPieces& pieces);

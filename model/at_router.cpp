@@ -8,9 +8,7 @@ AtRouter::AtRouter(Agenda& agenda, ClearConnectTiming& timing, tlm::tlm_initiato
                    const Backward& backward)
     : agenda_(agenda),
       timing_(timing),
-      memory_(agenda, memory,
-              {[this](auto& packet) { route_of(packet).at_memory = agenda_.now(); },
-               [this](auto& packet) { return pass_response(packet); }}) {
+      memory_(agenda, memory, {[](auto&) {}, [this](auto& packet) { return pass_response(packet); }}) {
   for (int i = 0; i < int(kInitiators); ++i) {
     initiators_[std::size_t(i)].emplace(
         agenda, AtTarget::Owner{[this, i](auto& packet) { return pass_request(Initiator(i), packet); },
@@ -30,12 +28,13 @@ Cycles AtRouter::pass_request(Initiator initiator, tlm::tlm_generic_payload& pac
   const Cycles now = agenda_.now();
   const std::uint64_t bytes = packet.get_data_length();
   const std::uint64_t packets = timing_.packets_for(bytes);
-  const ClearConnectTiming::Passage passage =
-      packet.is_write() ? timing_.forward(initiator, bytes, packets, now)
-                        : timing_.request(initiator, packets, now);
+  const ClearConnectTiming::Passage passage = packet.is_write()
+                                                  ? timing_.forward(initiator, bytes, packets, now)
+                                                  : timing_.request(initiator, packets, now);
   Route& route = route_of(packet);
   route.initiator = initiator;
   route.sent_whole = passage.last;
+  route.at_memory = passage.first;
   agenda_.at(passage.first, [this, &packet] { memory_.send(packet); });
   return passage.sent;
 }
@@ -53,9 +52,8 @@ Cycles AtRouter::pass_response(tlm::tlm_generic_payload& packet) {
     there = timing_.backward(route.initiator, bytes, timing_.packets_for(bytes), first, now);
     port_free = std::max(now, timing_.backward_port_free());
   }
-  agenda_.at(there, [this, &packet] {
-    initiators_[std::size_t(route_of(packet).initiator)]->respond(packet);
-  });
+  agenda_.at(there,
+             [this, &packet] { initiators_[std::size_t(route_of(packet).initiator)]->respond(packet); });
   return port_free;
 }
 

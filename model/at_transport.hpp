@@ -14,10 +14,12 @@ class AtTransport {
  public:
   AtTransport(Agenda& agenda, tlm::tlm_initiator_socket<>& socket)
       : agenda_(agenda),
-        initiator_(agenda, socket, {[](auto&) {}, [this](auto&) {
-                                      over_.notify(sc_core::SC_ZERO_TIME);
-                                      return agenda_.now();
-                                    }}) {}
+        initiator_(agenda, socket,
+                   {[](auto&) {},
+                    [this](auto&) {
+                      over_.notify(sc_core::SC_ZERO_TIME);
+                      return agenda_.now();
+                    }}) {}
 
   /// Of a payload that is used here only. Returns when it is over.
   Cycles transport(tlm::tlm_generic_payload& payload) {

@@ -41,8 +41,8 @@ struct ChipConfig {
     int bytes_per_cycle;      ///< into or out of one PE
     int misalignment_cycles;  ///< a PE whose piece is off 8 bytes or spread over more packets than it needs
     bool consolidate_equal_addresses;
-    int stolen_sram_cycles;    ///< SRAM port cycles taken for 8 bytes
-    int outstanding_packets;   ///< on the way at a time; loosely timed there is no bound
+    int stolen_sram_cycles;   ///< SRAM port cycles taken for 8 bytes
+    int outstanding_packets;  ///< on the way at a time; loosely timed there is no bound
   } pio;
 
   struct ClearConnect {

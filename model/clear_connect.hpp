@@ -17,8 +17,8 @@ namespace model {
 
 /// The on-chip network between three initiators and mono memory. A read goes out as request packets and comes
 /// back as data packets; a write is posted: its data packets go out, nothing comes back, and the delay out
-/// says when the memory has taken the last byte. Debug transport and DMI pass through. Any TLM-2.0 memory can be
-/// bound to ddr_socket. With an agenda it also passes on transactions in four phases (AtRouter).
+/// says when the memory has taken the last byte. Debug transport and DMI pass through. Any TLM-2.0 memory can
+/// be bound to ddr_socket. With an agenda it also passes on transactions in four phases (AtRouter).
 class ClearConnect : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket_tagged<ClearConnect> pio_socket{"pio_socket"};

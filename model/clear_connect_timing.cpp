@@ -31,8 +31,7 @@ ClearConnectTiming::Passage ClearConnectTiming::forward(Initiator initiator, std
                                                         std::uint64_t packets, Cycles now) {
   statistics_[std::size_t(initiator)].packets += packets;
   statistics_[std::size_t(initiator)].bytes += bytes;
-  return send(initiator, cycles_at_width(bytes, link_bytes_per_cycle_),
-              port_cycles(bytes), now);
+  return send(initiator, cycles_at_width(bytes, link_bytes_per_cycle_), port_cycles(bytes), now);
 }
 
 ClearConnectTiming::Passage ClearConnectTiming::send(Initiator initiator, Cycles link_cycles,

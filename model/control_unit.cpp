@@ -296,8 +296,7 @@ void ControlUnit::send(cn::MonoAddress address, std::uint8_t* data, std::size_t 
   if (transaction_.is_response_error())
     throw cn::MachineFault("mono access of " + std::to_string(size) + " bytes at " + std::to_string(address) +
                            ": " + transaction_.get_response_string());
-  spend(CycleCause::data_cache,
-        over - now_ + Cycles(config_.control.cache_miss_cycles));
+  spend(CycleCause::data_cache, over - now_ + Cycles(config_.control.cache_miss_cycles));
 }
 
 tlm::tlm_sync_enum ControlUnit::nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,

@@ -37,9 +37,9 @@ struct ControlStatistics {
 
 /// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on SystemC's only
 /// firmware process and runs ahead by a local cycle count; it synchronises with SystemC time where the host
-/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it. With an agenda it
-/// is approximately timed: the PIO port lets time pass at each request, semaphore wait and kernel end, and mono
-/// accesses are transactions of four phases.
+/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it. With an agenda
+/// it is approximately timed: the PIO port lets time pass at each request, semaphore wait and kernel end, and
+/// mono accesses are transactions of four phases.
 class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort {
  public:
   sc_core::sc_port<PioPort> pio{"pio"};

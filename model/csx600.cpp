@@ -20,9 +20,8 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
       poly_sram("poly_sram", config_, control_unit.poly_memory()),
       dma_engine("dma_engine", config_, clock, control_unit.poly_memory(), agenda.get()),
       clear_connect("clear_connect", config_, clock, agenda.get()),
-      mono_ddr(memory == MonoMemory::ddr
-                   ? std::make_unique<MonoDdr>("mono_ddr", config_, clock, agenda.get())
-                   : nullptr),
+      mono_ddr(memory == MonoMemory::ddr ? std::make_unique<MonoDdr>("mono_ddr", config_, clock, agenda.get())
+                                         : nullptr),
       host_link("host_link", config_, agenda.get()) {
   control_unit.pio.bind(dma_engine.port);
   control_unit.mono_socket.bind(clear_connect.control_socket);

@@ -138,9 +138,9 @@ void DmaEngine::start(const PioQueue::Start& next) {
 
 void DmaEngine::note_start(Request& request, const PioQueue::Start& next) {
   const MonoPieces& pieces = request.addresses.pieces;
-  request.event = {request.id,          pieces.direction(), pieces.poly_bytes(),
-                   pieces.pes(),        next.entry.enqueued, next.cycle,
-                   0,                   request.done.index, queue_.waiting()};
+  request.event = {
+      request.id, pieces.direction(), pieces.poly_bytes(), pieces.pes(), next.entry.enqueued, next.cycle,
+      0,          request.done.index, queue_.waiting()};
   if (observer_ != nullptr) observer_->started(request.event);
 }
 

@@ -29,11 +29,11 @@ std::string refused_by_memory(const tlm::tlm_generic_payload& transaction);
 /// `mono_socket` (or, if the memory does not know the extension, by one read or write a run), port use of the
 /// SRAMs through `poly_socket`.
 ///
-/// Loosely timed, without processes: the control unit calls it with absolute cycles that do not go back. It must settle(t)
-/// before it lets SystemC time advance to t, since TLM-2.0 delays cannot point to the past.
+/// Loosely timed, without processes: the control unit calls it with absolute cycles that do not go back. It
+/// must settle(t) before it lets SystemC time advance to t, since TLM-2.0 delays cannot point to the past.
 ///
-/// With an agenda it is approximately timed: AtPio serves requests packet by packet in SystemC time, and the port's
-/// calls let time pass up to the cycle that they are given.
+/// With an agenda it is approximately timed: AtPio serves requests packet by packet in SystemC time, and the
+/// port's calls let time pass up to the cycle that they are given.
 ///
 /// A request without an enabled PE (or of no bytes) signals at once and costs nothing here, even when the
 /// queue is full.

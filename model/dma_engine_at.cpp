@@ -8,9 +8,9 @@ namespace model {
 void DmaEngine::build_at(Agenda& agenda, const ChipConfig& config) {
   agenda_ = &agenda;
   mono_socket.register_nb_transport_bw(this, &DmaEngine::nb_transport_bw);
-  at_ = std::make_unique<AtPio>(agenda, mono_socket, config, timing_, mono_,
-                                AtPio::Owner{[this](int engine) { finish_at(engine); },
-                                             [this](const auto& packet) { fail(packet); }});
+  at_ = std::make_unique<AtPio>(
+      agenda, mono_socket, config, timing_, mono_,
+      AtPio::Owner{[this](int engine) { finish_at(engine); }, [this](const auto& packet) { fail(packet); }});
 }
 
 tlm::tlm_sync_enum DmaEngine::nb_transport_bw(tlm::tlm_generic_payload& packet, tlm::tlm_phase& phase,

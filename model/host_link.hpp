@@ -21,12 +21,12 @@ struct HostLinkStatistics {
   std::uint64_t busy_cycles = 0;
 };
 
-/// PCI-X or PCIe between host memory and mono memory (HostLinkTiming). Data move at once, by debug transport; their
-/// packets contend on the chip's network with those of the PIO engine and the control unit.
+/// PCI-X or PCIe between host memory and mono memory (HostLinkTiming). Data move at once, by debug transport;
+/// their packets contend on the chip's network with those of the PIO engine and the control unit.
 ///
-/// Loosely timed: a transfer's end is that of the link itself, since the link is far narrower than the network; its
-/// packets only hold up others (HostTraffic). Approximately timed, with an agenda: the calling process waits, and
-/// the transfer ends with the link or with the memory's last response, whichever is later.
+/// Loosely timed: a transfer's end is that of the link itself, since the link is far narrower than the
+/// network; its packets only hold up others (HostTraffic). Approximately timed, with an agenda: the calling
+/// process waits, and the transfer ends with the link or with the memory's last response, whichever is later.
 class HostLink : public sc_core::sc_module, public HostTraffic {
  public:
   static constexpr std::uint64_t kMaxDmaBytes = HostLinkTiming::kMaxDmaBytes;

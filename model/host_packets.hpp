@@ -11,8 +11,8 @@
 
 namespace model {
 
-/// When what crosses the host link. A transfer is cut into host DMAs of at most 512 KiB (ClearSpeed's driver);
-/// each takes latency_cycles and its bytes at bytes_per_second, one after the other.
+/// When what crosses the host link. A transfer is cut into host DMAs of at most 512 KiB (ClearSpeed's
+/// driver); each takes latency_cycles and its bytes at bytes_per_second, one after the other.
 struct HostLinkTiming {
   static constexpr std::uint64_t kMaxDmaBytes = 512 * 1024;
 
@@ -33,8 +33,8 @@ struct HostLinkTiming {
   std::uint64_t packet_bytes;
 };
 
-/// The packets of one transfer on the chip's network, in order. Uploaded bytes are sent on when they have crossed
-/// the link; bytes to download are fetched a DMA's latency before they cross it.
+/// The packets of one transfer on the chip's network, in order. Uploaded bytes are sent on when they have
+/// crossed the link; bytes to download are fetched a DMA's latency before they cross it.
 class HostPackets {
  public:
   HostPackets(const HostLinkTiming& timing, tlm::tlm_command command, cn::MonoAddress address,

@@ -6,9 +6,9 @@
 
 namespace model {
 
-/// The host link's packets as others on the chip see them, loosely timed. They are booked on the network and the
-/// memory one by one and no earlier than others come that far, so that a long transfer does not push aside what
-/// comes before its end.
+/// The host link's packets as others on the chip see them, loosely timed. They are booked on the network and
+/// the memory one by one and no earlier than others come that far, so that a long transfer does not push
+/// aside what comes before its end.
 class HostTraffic : public virtual sc_core::sc_interface {
  public:
   /// Books what is due up to `cycle`. To be called before anything later is booked and before SystemC time

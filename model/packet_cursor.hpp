@@ -19,7 +19,9 @@ class PacketCursor {
 
   PacketCursor() = default;
   PacketCursor(const MonoPieces& pieces, std::uint64_t packet_bytes)
-      : pieces_(&pieces), packet_bytes_(packet_bytes), bytes_per_piece_(std::uint64_t(pieces.bytes_per_pe())) {
+      : pieces_(&pieces),
+        packet_bytes_(packet_bytes),
+        bytes_per_piece_(std::uint64_t(pieces.bytes_per_pe())) {
     look();
   }
 
@@ -43,7 +45,8 @@ class PacketCursor {
     packet_.address = run.address + offset_;
     packet_.bytes = std::min(packet_bytes_, run.bytes - offset_);
     packet_.first_piece = first_piece_of_run_ + static_cast<int>(offset_ / bytes_per_piece_);
-    packet_.last_piece = first_piece_of_run_ + static_cast<int>((offset_ + packet_.bytes - 1) / bytes_per_piece_);
+    packet_.last_piece =
+        first_piece_of_run_ + static_cast<int>((offset_ + packet_.bytes - 1) / bytes_per_piece_);
   }
 
   const MonoPieces* pieces_ = nullptr;

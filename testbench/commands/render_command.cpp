@@ -108,6 +108,8 @@ RenderRequest RenderCommand::make_request() const {
   request.options.level = level.level();
   request.options.program.buffer_loads = buffer == "both" || buffer == "loads";
   request.options.program.buffer_saves = buffer == "both" || buffer == "saves";
+  if (native && request.options.timing == model::TimingStyle::approximately_timed)
+    throw InputError("--timing: found at with --native, a native run has no clock; allowed is lt");
   if (!vcd.empty()) {
     if (native) throw InputError("--vcd: a native run has no clock and so no waves; leave out --native");
     WaveOptions waves;

@@ -119,6 +119,19 @@ class PioBench : public SystemCFixture {
     return semaphores.signals[semaphore].empty() ? 0 : semaphores.signals[semaphore].back();
   }
 
+  void prepare(const model::ChipConfig& chip) {
+    poly = std::make_unique<cn::PolyMemory>(chip.chip.pes, chip.poly.sram_bytes);
+    engine = std::make_unique<model::DmaEngine>("engine", chip, clock, *poly, agenda.get());
+    sram = std::make_unique<model::PolySram>("sram", chip, *poly);
+    network = std::make_unique<model::ClearConnect>("network", chip, clock, agenda.get());
+    engine->semaphores.bind(semaphores);
+    engine->mono_socket.bind(at_engine.in);
+    at_engine.out.bind(network->pio_socket);
+    engine->poly_socket.bind(sram->pio_socket);
+    control.socket.bind(network->control_socket);
+    host.socket.bind(network->host_socket);
+  }
+
   model::ClockDomain clock{1e9};
   std::unique_ptr<model::Agenda> agenda;
   ProtocolChecker at_engine{"at_engine"};  ///< between engine and network
@@ -133,20 +146,6 @@ class PioBench : public SystemCFixture {
   SignalRecorder semaphores{"semaphores"};
   TestInitiator control{"control"};
   TestInitiator host{"host"};
-
- private:
-  void prepare(const model::ChipConfig& chip) {
-    poly = std::make_unique<cn::PolyMemory>(chip.chip.pes, chip.poly.sram_bytes);
-    engine = std::make_unique<model::DmaEngine>("engine", chip, clock, *poly, agenda.get());
-    sram = std::make_unique<model::PolySram>("sram", chip, *poly);
-    network = std::make_unique<model::ClearConnect>("network", chip, clock, agenda.get());
-    engine->semaphores.bind(semaphores);
-    engine->mono_socket.bind(at_engine.in);
-    at_engine.out.bind(network->pio_socket);
-    engine->poly_socket.bind(sram->pio_socket);
-    control.socket.bind(network->control_socket);
-    host.socket.bind(network->host_socket);
-  }
 };
 
 }  // namespace test_support

@@ -12,9 +12,9 @@
 namespace test_support {
 
 /// Stands between an initiator and a target, passes everything on and notes what breaks the rules of the base
-/// protocol (IEEE 1666-2011, 15.2.6 and 14.5): order of phases, one request and one response at a time on a socket,
-/// one response a request, times that do not go back, a response status, payloads with a memory manager that are
-/// alive.
+/// protocol (IEEE 1666-2011, 15.2.6 and 14.5): order of phases, one request and one response at a time on a
+/// socket, one response a request, times that do not go back, a response status, payloads with a memory
+/// manager that are alive.
 class ProtocolChecker : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<ProtocolChecker> in{"in"};
@@ -102,8 +102,7 @@ class ProtocolChecker : public sc_core::sc_module {
 
   void begin_request(Payload& payload, const sc_core::sc_time& delay) {
     expect(active_.count(&payload) == 0, "a payload is in one transaction at a time");
-    expect(request_ == nullptr && sc_core::sc_time_stamp() + delay >= request_free_,
-           "one request at a time");
+    expect(request_ == nullptr && sc_core::sc_time_stamp() + delay >= request_free_, "one request at a time");
     expect(payload.get_response_status() == tlm::TLM_INCOMPLETE_RESPONSE, "a request has no response status");
     request_ = &payload;
     active_[&payload] = {};

@@ -111,10 +111,11 @@ INSTANTIATE_TEST_SUITE_P(Memories, Foreign,
                                          Case{TimingStyle::approximately_timed, false, 133.7},
                                          Case{TimingStyle::loosely_timed, false, 0},
                                          Case{TimingStyle::approximately_timed, false, 0}),
-                         [](const testing::TestParamInfo<Case>& info) {
-                           return std::string(info.param.timing == TimingStyle::loosely_timed ? "Lt" : "At") +
-                                  (info.param.grants_pointer ? "WithPointer" : "WithoutPointer") +
-                                  (info.param.latency_nanoseconds > 0 ? "" : "WithoutLatency");
+                         [](const testing::TestParamInfo<Case>& parameters) {
+                           return std::string(parameters.param.timing == TimingStyle::loosely_timed ? "Lt"
+                                                                                                    : "At") +
+                                  (parameters.param.grants_pointer ? "WithPointer" : "WithoutPointer") +
+                                  (parameters.param.latency_nanoseconds > 0 ? "" : "WithoutLatency");
                          });
 
 /// The latency of the foreign memory is felt: a slower one makes a longer run.
@@ -134,16 +135,18 @@ class ForeignLatency : public test_support::SystemCFixture, public testing::With
       machine.async_copy_m2p(done, {0, 32}, cn::MonoPlaces::array(0, 32), cn::LaneMask::first(1));
       machine.sem_wait(done);
     });
+    elaborate();
     chip.control_unit.start();
     sc_core::sc_start();
     chip.control_unit.rethrow_failure();
+    EXPECT_TRUE(chip.control_unit.finished());
     return chip.control_unit.now() - chip.control_unit.start_cycle();
   }
 };
 
 TEST_P(ForeignLatency, IsFeltByARead) {
-  const model::Cycles fast = cycles_with(0);
-  const model::Cycles slow = cycles_with(10000);  // 2100 cycles at 210 MHz
+  const model::Cycles fast = cycles_with(1000);
+  const model::Cycles slow = cycles_with(11000);  // 2100 cycles more at 210 MHz
   EXPECT_NEAR(double(slow - fast), 2100.0, 1.0);
 }
 

@@ -138,8 +138,8 @@ TEST(HostContentionStyles, Agree) {
 
 INSTANTIATE_TEST_SUITE_P(Styles, HostContention,
                          testing::Values(TimingStyle::loosely_timed, TimingStyle::approximately_timed),
-                         [](const testing::TestParamInfo<TimingStyle>& info) {
-                           return info.param == TimingStyle::loosely_timed ? "Lt" : "At";
+                         [](const testing::TestParamInfo<TimingStyle>& style) {
+                           return style.param == TimingStyle::loosely_timed ? "Lt" : "At";
                          });
 
 }  // namespace

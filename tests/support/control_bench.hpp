@@ -40,7 +40,9 @@ class ControlBench : public SystemCFixture {
  protected:
   using Firmware = std::function<void(cn::Machine&)>;
 
-  void build(const model::ChipConfig& config) { chip = std::make_unique<model::Csx600>("chip", config); }
+  void build(const model::ChipConfig& config, model::TimingStyle timing = model::TimingStyle::loosely_timed) {
+    chip = std::make_unique<model::Csx600>("chip", config, timing);
+  }
 
   /// Until nothing happens any more; what the firmware threw stays in the control unit.
   void run(Firmware firmware) {

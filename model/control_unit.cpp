@@ -94,7 +94,7 @@ void ControlUnit::wait_until(Cycles cycle) {
 }
 
 void ControlUnit::synchronise() {
-  pio->settle(now_);
+  settle_pio(now_);
   wait_until(now_);
 }
 

@@ -43,7 +43,8 @@ struct ChipConfig {
     int bytes_per_cycle;      ///< into or out of one PE
     int misalignment_cycles;  ///< a PE whose piece is off 8 bytes or spread over more packets than it needs
     bool consolidate_equal_addresses;
-    int stolen_sram_cycles;  ///< SRAM port cycles taken for 8 bytes
+    int stolen_sram_cycles;   ///< SRAM port cycles taken for 8 bytes
+    int outstanding_packets;  ///< on the way at a time; loosely timed there is no bound
   } pio;
 
   struct ClearConnect {
@@ -63,7 +64,8 @@ struct ChipConfig {
     int turn_round_cycles;
     int refresh_interval_cycles;  ///< 0: no refresh
     int refresh_cycles;
-    int ecc_cycles;  ///< added to each access
+    int ecc_cycles;          ///< added to each access
+    int queue_transactions;  ///< taken at a time; loosely timed there is no bound
   } ddr;
 
   struct Host {

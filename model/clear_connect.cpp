@@ -8,15 +8,21 @@
 namespace model {
 
 ClearConnect::ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config,
-                           const ClockDomain& clock)
+                           const ClockDomain& clock, Agenda* agenda)
     : sc_module(name),
       clock_(clock),
       port_bytes_per_cycle_(std::uint64_t(config.ddr.bytes_per_cycle)),
       timing_(config.clear_connect, config.ddr.bytes_per_cycle) {
+  if (agenda != nullptr)
+    at_router_.emplace(*agenda, timing_, ddr_socket,
+                       [this](int initiator, auto& transaction, auto& phase, auto& delay) {
+                         return answer(initiator, transaction, phase, delay);
+                       });
   register_socket(pio_socket, Initiator::pio);
   register_socket(control_socket, Initiator::control);
   register_socket(host_socket, Initiator::host);
   ddr_socket.register_invalidate_direct_mem_ptr(this, &ClearConnect::invalidate_direct_mem_ptr);
+  if (at_router_) ddr_socket.register_nb_transport_bw(this, &ClearConnect::nb_transport_bw);
 }
 
 void ClearConnect::register_socket(tlm_utils::simple_target_socket_tagged<ClearConnect>& socket,
@@ -25,10 +31,13 @@ void ClearConnect::register_socket(tlm_utils::simple_target_socket_tagged<ClearC
   socket.register_b_transport(this, &ClearConnect::b_transport, tag);
   socket.register_transport_dbg(this, &ClearConnect::transport_dbg, tag);
   socket.register_get_direct_mem_ptr(this, &ClearConnect::get_direct_mem_ptr, tag);
+  if (at_router_) socket.register_nb_transport_fw(this, &ClearConnect::nb_transport_fw, tag);
 }
 
 void ClearConnect::b_transport(int initiator, tlm::tlm_generic_payload& transaction,
                                sc_core::sc_time& delay) {
+  if (initiator != int(Initiator::host) && host_traffic.size() > 0)
+    host_traffic->book_until(cycle_of_delay(clock_, delay));
   Load load{transaction.is_write(), 0, 0};
   if (transaction.is_read() || transaction.is_write()) {
     load.bytes = transaction.get_data_length();
@@ -68,6 +77,24 @@ void ClearConnect::pass_read(Initiator initiator, const Load& load, tlm::tlm_gen
                            ? cycle_of_delay(clock_, addresses->first_data)
                            : std::max(passage.first, last - std::min(last, at_full_width));
   delay = delay_until(clock_, timing_.backward(initiator, load.bytes, load.packets, first, last));
+}
+
+tlm::tlm_sync_enum ClearConnect::nb_transport_fw(int initiator, tlm::tlm_generic_payload& transaction,
+                                                 tlm::tlm_phase& phase, sc_core::sc_time& delay) {
+  return at_router_->nb_transport_fw(initiator, transaction, phase, delay);
+}
+
+tlm::tlm_sync_enum ClearConnect::nb_transport_bw(tlm::tlm_generic_payload& transaction, tlm::tlm_phase& phase,
+                                                 sc_core::sc_time& delay) {
+  return at_router_->nb_transport_bw(transaction, phase, delay);
+}
+
+tlm::tlm_sync_enum ClearConnect::answer(int initiator, tlm::tlm_generic_payload& transaction,
+                                        tlm::tlm_phase& phase, sc_core::sc_time& delay) {
+  auto& socket = initiator == int(Initiator::pio)       ? pio_socket
+                 : initiator == int(Initiator::control) ? control_socket
+                                                        : host_socket;
+  return socket->nb_transport_bw(transaction, phase, delay);
 }
 
 unsigned int ClearConnect::transport_dbg(int, tlm::tlm_generic_payload& transaction) {

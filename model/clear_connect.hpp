@@ -2,18 +2,23 @@
 
 #include <tlm_utils/simple_initiator_socket.h>
 #include <tlm_utils/simple_target_socket.h>
+#include <optional>
 #include <systemc>
 #include <tlm>
 
+#include "model/agenda.hpp"
+#include "model/at_router.hpp"
 #include "model/chip_config.hpp"
 #include "model/clear_connect_timing.hpp"
 #include "model/clock_domain.hpp"
+#include "model/host_traffic.hpp"
 
 namespace model {
 
 /// The on-chip network between three initiators and mono memory. A read goes out as request packets and comes
 /// back as data packets; a write is posted: its data packets go out, nothing comes back, and the delay out
-/// says when the memory has taken the last byte. Debug transport and DMI pass through.
+/// says when the memory has taken the last byte. Debug transport and DMI pass through. Any TLM-2.0 memory can
+/// be bound to ddr_socket. With an agenda it also passes on transactions in four phases (AtRouter).
 class ClearConnect : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket_tagged<ClearConnect> pio_socket{"pio_socket"};
@@ -21,7 +26,10 @@ class ClearConnect : public sc_core::sc_module {
   tlm_utils::simple_target_socket_tagged<ClearConnect> host_socket{"host_socket"};
   tlm_utils::simple_initiator_socket<ClearConnect> ddr_socket{"ddr_socket"};
 
-  ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock);
+  HostTrafficPort host_traffic{"host_traffic"};
+
+  ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+               Agenda* agenda = nullptr);
 
   const ClearConnectStatistics& statistics(Initiator initiator) const {
     return timing_.statistics(initiator);
@@ -36,6 +44,12 @@ class ClearConnect : public sc_core::sc_module {
 
   void register_socket(tlm_utils::simple_target_socket_tagged<ClearConnect>& socket, Initiator initiator);
   void b_transport(int initiator, tlm::tlm_generic_payload& transaction, sc_core::sc_time& delay);
+  tlm::tlm_sync_enum nb_transport_fw(int initiator, tlm::tlm_generic_payload& transaction,
+                                     tlm::tlm_phase& phase, sc_core::sc_time& delay);
+  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& transaction, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay);
+  tlm::tlm_sync_enum answer(int initiator, tlm::tlm_generic_payload& transaction, tlm::tlm_phase& phase,
+                            sc_core::sc_time& delay);
   unsigned int transport_dbg(int initiator, tlm::tlm_generic_payload& transaction);
   bool get_direct_mem_ptr(int initiator, tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi);
   void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end);
@@ -48,6 +62,7 @@ class ClearConnect : public sc_core::sc_module {
   ClockDomain clock_;
   Divisor port_bytes_per_cycle_;
   ClearConnectTiming timing_;
+  std::optional<AtRouter> at_router_;
 };
 
 }  // namespace model

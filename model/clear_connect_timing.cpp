@@ -17,6 +17,10 @@ ClearConnectTiming::ClearConnectTiming(const ChipConfig::ClearConnect& config, i
       port_bytes_per_cycle_(std::uint64_t(ddr_port_bytes_per_cycle)),
       latency_cycles_(Cycles(config.hop_cycles) * Cycles(config.hops_to_ddr)) {}
 
+Cycles ClearConnectTiming::port_cycles(std::uint64_t bytes) const {
+  return cycles_at_width(bytes, port_bytes_per_cycle_);
+}
+
 ClearConnectTiming::Passage ClearConnectTiming::request(Initiator initiator, std::uint64_t packets,
                                                         Cycles now) {
   statistics_[std::size_t(initiator)].packets += packets;
@@ -27,8 +31,7 @@ ClearConnectTiming::Passage ClearConnectTiming::forward(Initiator initiator, std
                                                         std::uint64_t packets, Cycles now) {
   statistics_[std::size_t(initiator)].packets += packets;
   statistics_[std::size_t(initiator)].bytes += bytes;
-  return send(initiator, cycles_at_width(bytes, link_bytes_per_cycle_),
-              cycles_at_width(bytes, port_bytes_per_cycle_), now);
+  return send(initiator, cycles_at_width(bytes, link_bytes_per_cycle_), port_cycles(bytes), now);
 }
 
 ClearConnectTiming::Passage ClearConnectTiming::send(Initiator initiator, Cycles link_cycles,
@@ -38,7 +41,7 @@ ClearConnectTiming::Passage ClearConnectTiming::send(Initiator initiator, Cycles
   link_free = link_start + link_cycles;
   const Cycles port_start = wait_for_port(initiator, forward_port_free_, link_start + latency_cycles_);
   forward_port_free_ = port_start + port_cycles;
-  return {port_start, std::max(forward_port_free_, link_free + latency_cycles_)};
+  return {port_start, std::max(forward_port_free_, link_free + latency_cycles_), link_free};
 }
 
 Cycles ClearConnectTiming::backward(Initiator initiator, std::uint64_t bytes, std::uint64_t packets,
@@ -46,7 +49,7 @@ Cycles ClearConnectTiming::backward(Initiator initiator, std::uint64_t bytes, st
   statistics_[std::size_t(initiator)].packets += packets;
   statistics_[std::size_t(initiator)].bytes += bytes;
   const Cycles port_start = wait_for_port(initiator, backward_port_free_, first);
-  backward_port_free_ = port_start + cycles_at_width(bytes, port_bytes_per_cycle_);
+  backward_port_free_ = port_start + port_cycles(bytes);
   Cycles& link_free = backward_link_free_[std::size_t(initiator)];
   link_free = std::max(port_start, link_free) + cycles_at_width(bytes, link_bytes_per_cycle_);
   return std::max({link_free, backward_port_free_, last}) + latency_cycles_;

@@ -30,6 +30,7 @@ class ClearConnectTiming {
   struct Passage {
     Cycles first;  ///< the first packet is there
     Cycles last;   ///< the last byte is there
+    Cycles sent;   ///< the initiator's link is free again
   };
 
   ClearConnectTiming(const ChipConfig::ClearConnect& config, int ddr_port_bytes_per_cycle);
@@ -46,6 +47,10 @@ class ClearConnectTiming {
   /// Data of a read, which the DDR has from `first` to `last`; returns when the last byte is at the
   /// initiator.
   Cycles backward(Initiator initiator, std::uint64_t bytes, std::uint64_t packets, Cycles first, Cycles last);
+
+  /// What `bytes` occupy the DDR's port for.
+  Cycles port_cycles(std::uint64_t bytes) const;
+  Cycles backward_port_free() const { return backward_port_free_; }
 
   const ClearConnectStatistics& statistics(Initiator initiator) const {
     return statistics_[std::size_t(initiator)];

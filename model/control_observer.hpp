@@ -29,6 +29,11 @@ class ControlObserver {
  public:
   virtual ~ControlObserver() = default;
 
+  /// What the control unit does from `start` on, told before time may pass and its end is known. `spent` or
+  /// `ran_kernel` with the same start follows, unless it takes no time.
+  virtual void began(CycleCause /*cause*/, Cycles /*start*/, int /*semaphore*/) {}
+  virtual void began_kernel(const char* /*name*/, Cycles /*start*/, int /*enabled_pes*/) {}
+
   /// [start, finish) went to `cause`; empty spans are not reported. `semaphore` is the one waited on or -1.
   virtual void spent(CycleCause cause, Cycles start, Cycles finish, int semaphore) = 0;
 

@@ -23,7 +23,7 @@ Cycles ControlStatistics::exposed_pio() const {
 }
 
 ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config,
-                         const ClockDomain& clock, PeArray& pe_array)
+                         const ClockDomain& clock, PeArray& pe_array, Agenda* agenda)
     : sc_module(name),
       Machine(config.chip.pes, config.poly.sram_bytes),
       config_(config),
@@ -34,6 +34,10 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       line_(std::size_t(config.control.cache_line_bytes)) {
   semaphores.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &ControlUnit::forget_mono_pointer);
+  if (agenda != nullptr) {
+    at_transport_ = std::make_unique<AtTransport>(*agenda, mono_socket);
+    mono_socket.register_nb_transport_bw(this, &ControlUnit::nb_transport_bw);
+  }
   SC_HAS_PROCESS(ControlUnit);
   SC_THREAD(run);
   set_stack_size(kFirmwareStackBytes);
@@ -79,10 +83,41 @@ void ControlUnit::spend(CycleCause cause, Cycles cycles, int semaphore) {
   now_ += cycles;
 }
 
-void ControlUnit::synchronise() {
-  pio->settle(now_);
-  const sc_core::sc_time target = clock_.time_at(now_);
+void ControlUnit::report_begin(CycleCause cause, int semaphore) {
+  if (observer_ != nullptr) observer_->began(cause, now_, semaphore);
+}
+
+void ControlUnit::wait_until(Cycles cycle) {
+  if (host_traffic.size() > 0) host_traffic->book_until(cycle);
+  const sc_core::sc_time target = clock_.time_at(cycle);
   if (target > sc_core::sc_time_stamp()) wait(target - sc_core::sc_time_stamp());
+}
+
+void ControlUnit::synchronise() {
+  settle_pio(now_);
+  wait_until(now_);
+}
+
+/// What the host begins next must not come after requests that were booked for later.
+void ControlUnit::settle_pio(Cycles cycle) {
+  for (auto next = pio->next_start(); host_is_transferring() && next && *next <= cycle;
+       next = pio->next_start()) {
+    wait_until(*next);
+    wait(sc_core::SC_ZERO_TIME);  // the host's process comes first
+    pio->settle(*next);
+  }
+  if (host_is_transferring()) {
+    wait_until(cycle);
+    wait(sc_core::SC_ZERO_TIME);
+  }
+  pio->settle(cycle);
+}
+
+bool ControlUnit::serve_next_request() {
+  const std::optional<Cycles> next = pio->next_start();
+  if (!next || !host_is_transferring()) return pio->serve_next();
+  settle_pio(*next);
+  return true;
 }
 
 /// What was reported lies in the future of SystemC time; here it becomes the present, before too much piles
@@ -105,9 +140,13 @@ void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
   if (!timed_ || !issued.root().reached) return;
   const PeArray::Cost cost = pe_array_.retire(kernel, issued);
   const Cycles start = now_;
-  pio->settle(start);
+  settle_pio(start);
   const std::uint64_t words_before = pio->words_moved_before(start);
-  pio->settle(start + cost.cycles);
+  if (observer_ != nullptr) {
+    report_begin(CycleCause::poly);
+    observer_->began_kernel(kernel, start, static_cast<int>(issued.root().enabled_lanes));
+  }
+  settle_pio(start + cost.cycles);
   const std::uint64_t words = pio->words_moved_before(start + cost.cycles) - words_before;
   spend(CycleCause::poly, cost.cycles);
   spend(CycleCause::stolen,
@@ -125,6 +164,8 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
   }
   spend(CycleCause::transfer_call, Cycles(config_.control.transfer_call_cycles));
   waits_for_save_[std::size_t(transfer.done.index)] = transfer.direction == cn::Direction::poly_to_mono;
+  settle_pio(now_);
+  report_begin(CycleCause::wait_pio_queue);
   const Cycles go_on = pio->enqueue(transfer, now_);
   spend(CycleCause::wait_pio_queue, go_on - now_);
 }
@@ -143,12 +184,13 @@ void ControlUnit::sem_signal(cn::Semaphore semaphore) {
   if (!shared_with_host_[std::size_t(semaphore.index)]) return;
   synchronise();
   host_event_.notify(sc_core::SC_ZERO_TIME);
+  for (int delta = 0; delta < 2; ++delta) wait(sc_core::SC_ZERO_TIME);  // what it begins now comes first
 }
 
 void ControlUnit::sem_wait(cn::Semaphore semaphore) {
   if (!timed_) return;
   spend(CycleCause::semaphore, Cycles(config_.control.semaphore_cycles), semaphore.index);
-  pio->settle(now_);
+  settle_pio(now_);
   if (shared_with_host_[std::size_t(semaphore.index)]) {
     wait_for_host(semaphore);
   } else {
@@ -158,14 +200,15 @@ void ControlUnit::sem_wait(cn::Semaphore semaphore) {
 }
 
 void ControlUnit::wait_for_signal(cn::Semaphore semaphore) {
+  const CycleCause cause =
+      waits_for_save_[std::size_t(semaphore.index)] ? CycleCause::wait_save : CycleCause::wait_load;
   std::optional<Cycles> at = semaphore_file_.take(semaphore.index);
+  if (!at) report_begin(cause, semaphore.index);
   // Nobody can queue another request while this thread waits, so the engine may decide on and on.
-  while (!at && pio->serve_next()) at = semaphore_file_.take(semaphore.index);
+  while (!at && serve_next_request()) at = semaphore_file_.take(semaphore.index);
   if (!at)
     throw cn::MachineFault("deadlock at cycle " + std::to_string(now_) + ": wait on semaphore '" +
                            semaphore_name(semaphore) + "', which no outstanding transfer will signal");
-  const CycleCause cause =
-      waits_for_save_[std::size_t(semaphore.index)] ? CycleCause::wait_save : CycleCause::wait_load;
   if (*at > now_) spend(cause, *at - now_, semaphore.index);
 }
 
@@ -173,6 +216,7 @@ void ControlUnit::wait_for_host(cn::Semaphore semaphore) {
   std::optional<Cycles> at = semaphore_file_.take(semaphore.index);
   if (!at) {
     synchronise();  // the host may answer while time catches up
+    report_begin(CycleCause::wait_host, semaphore.index);
     at = semaphore_file_.take(semaphore.index);
   }
   for (; !at; at = semaphore_file_.take(semaphore.index)) wait_for_host_event();
@@ -182,6 +226,7 @@ void ControlUnit::wait_for_host(cn::Semaphore semaphore) {
 /// Lets time pass until the host signals something, or a queued request starts: it is served in its time.
 void ControlUnit::wait_for_host_event() {
   if (const std::optional<Cycles> request = pio->next_start()) {
+    if (host_traffic.size() > 0) host_traffic->book_until(*request);
     wait(clock_.time_at(*request) - sc_core::sc_time_stamp(), signalled_by_host_);
   } else {
     wait(signalled_by_host_);
@@ -220,7 +265,7 @@ const void* ControlUnit::read_mono_bytes(cn::MonoAddress from, std::size_t bytes
 }
 
 void ControlUnit::fetch_line(cn::MonoAddress line) {
-  pio->settle(now_);
+  settle_pio(now_);
   transaction_.set_command(tlm::TLM_READ_COMMAND);
   send(line, line_.data(), line_.size());
 }
@@ -233,7 +278,7 @@ void ControlUnit::write_mono_bytes(cn::MonoAddress to, const void* bytes, std::s
     return;
   }
   issue_mono(1);
-  pio->settle(now_);
+  settle_pio(now_);
   std::vector<std::uint8_t> data(size);
   std::memcpy(data.data(), bytes, size);
   transaction_.set_command(tlm::TLM_WRITE_COMMAND);
@@ -248,13 +293,24 @@ void ControlUnit::send(cn::MonoAddress address, std::uint8_t* data, std::size_t 
   transaction_.set_byte_enable_ptr(nullptr);
   transaction_.set_dmi_allowed(false);
   transaction_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-  sc_core::sc_time delay = delay_until(clock_, now_);
-  mono_socket->b_transport(transaction_, delay);
+  report_begin(CycleCause::data_cache);
+  const Cycles over = transport();
   if (transaction_.is_response_error())
     throw cn::MachineFault("mono access of " + std::to_string(size) + " bytes at " + std::to_string(address) +
                            ": " + transaction_.get_response_string());
-  spend(CycleCause::data_cache,
-        cycle_of_delay(clock_, delay) - now_ + Cycles(config_.control.cache_miss_cycles));
+  spend(CycleCause::data_cache, over - now_ + Cycles(config_.control.cache_miss_cycles));
+}
+
+tlm::tlm_sync_enum ControlUnit::nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                                sc_core::sc_time& delay) {
+  return at_transport_->nb_transport_bw(payload, phase, delay);
+}
+
+Cycles ControlUnit::transport() {
+  if (at_transport_) return at_transport_->transport(transaction_);
+  sc_core::sc_time delay = delay_until(clock_, now_);
+  mono_socket->b_transport(transaction_, delay);
+  return cycle_of_delay(clock_, delay);
 }
 
 }  // namespace model

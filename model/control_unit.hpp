@@ -4,14 +4,17 @@
 #include <array>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <systemc>
 #include <tlm>
 
 #include "firmware/cn/machine.hpp"
+#include "model/at_transport.hpp"
 #include "model/chip_config.hpp"
 #include "model/clock_domain.hpp"
 #include "model/control_observer.hpp"
 #include "model/data_cache.hpp"
+#include "model/host_traffic.hpp"
 #include "model/mono_window.hpp"
 #include "model/pe_array.hpp"
 #include "model/pio_port.hpp"
@@ -34,17 +37,21 @@ struct ControlStatistics {
 
 /// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on SystemC's only
 /// firmware process and runs ahead by a local cycle count; it synchronises with SystemC time where the host
-/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it.
+/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it. With an agenda
+/// it is approximately timed: the PIO port lets time pass at each request, semaphore wait and kernel end, and
+/// mono accesses are transactions of four phases.
 class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort {
  public:
   sc_core::sc_port<PioPort> pio{"pio"};
   sc_core::sc_export<SemaphorePort> semaphores{"semaphores"};
   tlm_utils::simple_initiator_socket<ControlUnit> mono_socket{"mono_socket"};
 
+  HostTrafficPort host_traffic{"host_traffic"};
+
   using Firmware = std::function<void(cn::Machine&)>;
 
   ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-              PeArray& pe_array);
+              PeArray& pe_array, Agenda* agenda = nullptr);
 
   /// What runs from `start()` on.
   void load(Firmware firmware) { firmware_ = std::move(firmware); }
@@ -95,11 +102,21 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void wait_for_signal(cn::Semaphore semaphore);
   void wait_for_host(cn::Semaphore semaphore);
   void wait_for_host_event();
+  void wait_until(Cycles cycle);
+  bool host_is_transferring() const { return host_traffic.size() > 0 && host_traffic->in_progress(); }
+  /// Settles the PIO engine up to `cycle`; does not run ahead of the host while that uses the network.
+  void settle_pio(Cycles cycle);
+  bool serve_next_request();
+  void report_begin(CycleCause cause, int semaphore = -1);
   void synchronise();
   void synchronise_for_observer();
   void forget_mono_pointer(sc_dt::uint64 start, sc_dt::uint64 end);
   void fetch_line(cn::MonoAddress line);
   void send(cn::MonoAddress address, std::uint8_t* data, std::size_t size);
+  /// Sends transaction_ at now_; returns when it is over.
+  Cycles transport();
+  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay);
 
   const ChipConfig& config_;
   ClockDomain clock_;
@@ -107,6 +124,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   SemaphoreFile semaphore_file_;
   DataCache data_cache_;
   MonoWindow mono_window_;
+  std::unique_ptr<AtTransport> at_transport_;
   tlm::tlm_generic_payload transaction_;
   std::vector<std::uint8_t> line_;
   std::array<bool, kSemaphores> waits_for_save_{};  ///< direction of the latest transfer that signals it

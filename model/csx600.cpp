@@ -1,25 +1,37 @@
 #include "model/csx600.hpp"
 
 namespace model {
+namespace {
 
-Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config)
+std::unique_ptr<Agenda> agenda_for(TimingStyle timing, const ClockDomain& clock) {
+  return timing == TimingStyle::approximately_timed ? std::make_unique<Agenda>("agenda", clock) : nullptr;
+}
+
+}  // namespace
+
+Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, TimingStyle timing,
+               MonoMemory memory)
     : sc_module(name),
       config_(config),
       clock(config.chip.clock_hz),
+      agenda(agenda_for(timing, clock)),
       pe_array("pe_array", config_),
-      control_unit("control_unit", config_, clock, pe_array),
+      control_unit("control_unit", config_, clock, pe_array, agenda.get()),
       poly_sram("poly_sram", config_, control_unit.poly_memory()),
-      dma_engine("dma_engine", config_, clock, control_unit.poly_memory()),
-      clear_connect("clear_connect", config_, clock),
-      mono_ddr("mono_ddr", config_, clock),
-      host_link("host_link", config_) {
+      dma_engine("dma_engine", config_, clock, control_unit.poly_memory(), agenda.get()),
+      clear_connect("clear_connect", config_, clock, agenda.get()),
+      mono_ddr(memory == MonoMemory::ddr ? std::make_unique<MonoDdr>("mono_ddr", config_, clock, agenda.get())
+                                         : nullptr),
+      host_link("host_link", config_, agenda.get()) {
   control_unit.pio.bind(dma_engine.port);
   control_unit.mono_socket.bind(clear_connect.control_socket);
   dma_engine.semaphores.bind(control_unit.semaphores);
   dma_engine.mono_socket.bind(clear_connect.pio_socket);
   dma_engine.poly_socket.bind(poly_sram.pio_socket);
   host_link.socket.bind(clear_connect.host_socket);
-  clear_connect.ddr_socket.bind(mono_ddr.socket);
+  clear_connect.host_traffic.bind(host_link.traffic);
+  control_unit.host_traffic.bind(host_link.traffic);
+  if (mono_ddr) clear_connect.ddr_socket.bind(mono_ddr->socket);
 }
 
 }  // namespace model

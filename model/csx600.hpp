@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <systemc>
 
 #include "model/chip_config.hpp"
@@ -11,8 +13,15 @@
 #include "model/mono_ddr.hpp"
 #include "model/pe_array.hpp"
 #include "model/poly_sram.hpp"
+#include "model/timing_style.hpp"
 
 namespace model {
+
+/// What mono memory is.
+enum class MonoMemory : std::uint8_t {
+  ddr,            ///< MonoDdr
+  bound_outside,  ///< any TLM-2.0 target of ddr.size_bytes, bound to clear_connect.ddr_socket before the run
+};
 
 /// One ClearSpeed CSX600 with its DDR2 and its link to the host.
 ///
@@ -23,22 +32,26 @@ namespace model {
 ///        host_link ---------------------+
 class Csx600 : public sc_core::sc_module {
  public:
-  Csx600(const sc_core::sc_module_name& name, const ChipConfig& config);
+  explicit Csx600(const sc_core::sc_module_name& name, const ChipConfig& config,
+                  TimingStyle timing = TimingStyle::loosely_timed, MonoMemory memory = MonoMemory::ddr);
 
  private:
   ChipConfig config_;
 
  public:
   const ClockDomain clock;
+  const std::unique_ptr<Agenda> agenda;  ///< approximately timed only
   PeArray pe_array;
   ControlUnit control_unit;
   PolySram poly_sram;
   DmaEngine dma_engine;
   ClearConnect clear_connect;
-  MonoDdr mono_ddr;
+  const std::unique_ptr<MonoDdr> mono_ddr;  ///< none if the memory is bound outside
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }
+  /// All zero if the memory is bound outside.
+  DdrStatistics ddr_statistics() const { return mono_ddr ? mono_ddr->statistics() : DdrStatistics{}; }
 };
 
 }  // namespace model

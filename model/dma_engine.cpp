@@ -21,15 +21,18 @@ bool any_enabled(const cn::LaneMask& enabled, int num_pes) {
 }
 
 void check_response(const tlm::tlm_generic_payload& transaction) {
-  if (transaction.is_response_ok()) return;
-  throw cn::MachineFault("PIO transaction at mono address " + std::to_string(transaction.get_address()) +
-                         ": memory answered " + transaction.get_response_string());
+  if (!transaction.is_response_ok()) throw cn::MachineFault(refused_by_memory(transaction));
 }
 
 }  // namespace
 
+std::string refused_by_memory(const tlm::tlm_generic_payload& transaction) {
+  return "PIO transaction at mono address " + std::to_string(transaction.get_address()) +
+         ": memory answered " + transaction.get_response_string();
+}
+
 DmaEngine::DmaEngine(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-                     cn::PolyMemory& poly)
+                     cn::PolyMemory& poly, Agenda* agenda)
     : sc_module(name),
       clock_(clock),
       poly_(poly),
@@ -38,11 +41,12 @@ DmaEngine::DmaEngine(const sc_core::sc_module_name& name, const ChipConfig& conf
       timing_(config.pio),
       queue_(config.pio.arbitration, config.pio.queue_depth),
       mono_(config.ddr.size_bytes, poly),
-      requests_(std::size_t(config.pio.queue_depth * queue_.engines())),
+      requests_(std::size_t((config.pio.queue_depth + 1) * queue_.engines())),
       history_(std::size_t(queue_.engines()), WordHistory(remembered_requests(config.pio.queue_depth))) {
   port.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &DmaEngine::forget_mono_pointer);
   for (std::size_t slot = 0; slot < requests_.size(); ++slot) free_slots_.push_back(static_cast<int>(slot));
+  if (agenda != nullptr) build_at(*agenda, config);
 }
 
 void DmaEngine::forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) {
@@ -58,11 +62,7 @@ Cycles DmaEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
   }
   mono_.check(transfer, next_id_);
   Cycles accepted = now;
-  while (queue_.full(transfer.direction)) {
-    const PioQueue::Start next = *queue_.next();
-    start(next);
-    accepted = std::max(accepted, next.cycle);
-  }
+  while (queue_.full(transfer.direction)) accepted = std::max(accepted, make_room());
   statistics_.blocked_cycles += accepted - now;
 
   const int slot = free_slots_.back();
@@ -75,28 +75,47 @@ Cycles DmaEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
   cn::Transfer of_copied_addresses = transfer;  // a scatter may overwrite a table of addresses
   of_copied_addresses.mono = request.addresses.pieces.places();
   mono_.move(of_copied_addresses, *mono_socket.operator->());
+  if (at_) at_->refresh_writes_on_the_way();
   queue_.push({request.id, transfer.direction, accepted, slot});
-  settle(accepted);
+  start_due(accepted);
   statistics_.max_queue_depth = std::max(statistics_.max_queue_depth, queue_.waiting());
   return accepted;
 }
 
+Cycles DmaEngine::make_room() {
+  if (at_) {
+    wait_for_progress();
+    return agenda_->now();
+  }
+  const PioQueue::Start next = *queue_.next();
+  start(next);
+  return next.cycle;
+}
+
 void DmaEngine::settle(Cycles now) {
+  if (at_) return pass_time_until(now);
+  start_due(now);
+}
+
+void DmaEngine::start_due(Cycles now) {
   for (auto next = queue_.next(); next && next->cycle <= now; next = queue_.next()) start(*next);
 }
 
 bool DmaEngine::serve_next() {
+  if (at_) return wait_for_request();
   const auto next = queue_.next();
   if (next) start(*next);
   return next.has_value();
 }
 
 std::optional<Cycles> DmaEngine::next_start() const {
+  if (at_) return std::nullopt;  // it starts by itself
   const auto next = queue_.next();
   return next ? std::optional(next->cycle) : std::nullopt;
 }
 
 std::uint64_t DmaEngine::words_moved_before(Cycles cycle) const {
+  if (at_) return at_->words_moved();
   std::uint64_t words = 0;
   for (const WordHistory& history : history_) words += history.before(cycle);
   return words;
@@ -106,21 +125,30 @@ void DmaEngine::start(const PioQueue::Start& next) {
   Request& request = requests_[std::size_t(next.entry.slot)];
   const MonoPieces& pieces = request.addresses.pieces;
   const Cycles data_start = next.cycle + timing_.setup_cycles();
+  book_poly(request, data_start);
+  if (at_) return start_at(next);
   const Cycles memory_end = book_memory(request, timing_.memory_start(pieces, next.cycle));
   const Cycles finish = timing_.finish(pieces, next.cycle, memory_end);
-  book_poly(request, data_start);
   queue_.begin(next, finish);
   history_[std::size_t(queue_.engine_of(next.entry.direction))].add(data_start, finish,
                                                                     pieces.mono_bytes() / 8);
-  free_slots_.push_back(next.entry.slot);
+  note_start(request, next);
+  end_request(request, finish);
+}
 
-  PioEvent event{
+void DmaEngine::note_start(Request& request, const PioQueue::Start& next) {
+  const MonoPieces& pieces = request.addresses.pieces;
+  request.event = {
       request.id, pieces.direction(), pieces.poly_bytes(), pieces.pes(), next.entry.enqueued, next.cycle,
       0,          request.done.index, queue_.waiting()};
-  if (observer_ != nullptr) observer_->started(event);
-  event.finished = finish;
-  count(event, timing_.pe_cycles(pieces));
-  if (observer_ != nullptr) observer_->finished(event);
+  if (observer_ != nullptr) observer_->started(request.event);
+}
+
+void DmaEngine::end_request(Request& request, Cycles finish) {
+  request.event.finished = finish;
+  count(request.event, timing_.pe_cycles(request.addresses.pieces));
+  if (observer_ != nullptr) observer_->finished(request.event);
+  free_slots_.push_back(static_cast<int>(&request - requests_.data()));
   signal(request.done, finish);
 }
 

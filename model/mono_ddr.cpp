@@ -7,15 +7,24 @@
 
 namespace model {
 
-MonoDdr::MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock)
+MonoDdr::MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+                 Agenda* agenda)
     : sc_module(name),
       clock_(clock),
       timing_(config.ddr),
       memory_(config.ddr.size_bytes),
-      dmi_latency_cycles_(Cycles(config.ddr.page_hit_cycles)) {
+      dmi_latency_cycles_(Cycles(config.ddr.page_hit_cycles)),
+      agenda_(agenda),
+      queue_transactions_(config.ddr.queue_transactions) {
   socket.register_b_transport(this, &MonoDdr::b_transport);
   socket.register_transport_dbg(this, &MonoDdr::transport_dbg);
   socket.register_get_direct_mem_ptr(this, &MonoDdr::get_direct_mem_ptr);
+  if (agenda_ == nullptr) return;
+  socket.register_nb_transport_fw(this, &MonoDdr::nb_transport_fw);
+  at_target_.emplace(*agenda_, AtTarget::Owner{[this](auto& transaction) { return take(transaction); },
+                                               [this](auto& transaction, auto& phase, auto& delay) {
+                                                 return socket->nb_transport_bw(transaction, phase, delay);
+                                               }});
 }
 
 void MonoDdr::b_transport(tlm::tlm_generic_payload& transaction, sc_core::sc_time& delay) {
@@ -25,11 +34,38 @@ void MonoDdr::b_transport(tlm::tlm_generic_payload& transaction, sc_core::sc_tim
     transaction.set_response_status(addresses == nullptr ? tlm::TLM_OK_RESPONSE : serve(*addresses, delay));
     return;
   }
-  transaction.set_response_status(access_plainly(transaction, delay));
+  Cycles finish = 0;
+  transaction.set_response_status(access_plainly(transaction, cycle_of_delay(clock_, delay), finish));
+  if (transaction.is_response_ok()) delay = delay_until(clock_, finish);
 }
 
-tlm::tlm_response_status MonoDdr::access_plainly(const tlm::tlm_generic_payload& transaction,
-                                                 sc_core::sc_time& delay) {
+tlm::tlm_sync_enum MonoDdr::nb_transport_fw(tlm::tlm_generic_payload& transaction, tlm::tlm_phase& phase,
+                                            sc_core::sc_time& delay) {
+  return at_target_->nb_transport_fw(transaction, phase, delay);
+}
+
+std::optional<Cycles> MonoDdr::take(tlm::tlm_generic_payload& transaction) {
+  const Cycles now = agenda_->now();
+  Cycles over = now;
+  transaction.set_dmi_allowed(true);
+  transaction.set_response_status(transaction.get_command() == tlm::TLM_IGNORE_COMMAND
+                                      ? tlm::TLM_OK_RESPONSE
+                                      : access_plainly(transaction, now, over));
+  agenda_->at(over, [this, &transaction] { finish(transaction); });
+  if (++queued_ < queue_transactions_) return now;
+  not_accepted_ = &transaction;
+  return std::nullopt;
+}
+
+void MonoDdr::finish(tlm::tlm_generic_payload& transaction) {
+  --queued_;
+  if (not_accepted_ != nullptr && not_accepted_ != &transaction) at_target_->accept(*not_accepted_);
+  not_accepted_ = nullptr;  // or its response ends its request
+  at_target_->respond(transaction);
+}
+
+tlm::tlm_response_status MonoDdr::access_plainly(const tlm::tlm_generic_payload& transaction, Cycles arrival,
+                                                 Cycles& finish) {
   const std::uint64_t address = transaction.get_address();
   const std::uint64_t bytes = transaction.get_data_length();
   if (!contains(address, bytes)) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
@@ -40,8 +76,7 @@ tlm::tlm_response_status MonoDdr::access_plainly(const tlm::tlm_generic_payload&
   } else {
     std::memcpy(transaction.get_data_ptr(), memory_.data() + address, bytes);
   }
-  const auto access = timing_.access(address, bytes, transaction.is_write(), cycle_of_delay(clock_, delay));
-  delay = delay_until(clock_, access.finish);
+  finish = timing_.access(address, bytes, transaction.is_write(), arrival).finish;
   return tlm::TLM_OK_RESPONSE;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <tlm_utils/simple_target_socket.h>
+#include <optional>
 #include <systemc>
 #include <tlm>
 
+#include "model/agenda.hpp"
+#include "model/at_target.hpp"
 #include "model/chip_config.hpp"
 #include "model/clock_domain.hpp"
 #include "model/ddr_timing.hpp"
@@ -18,11 +21,15 @@ namespace model {
 ///
 /// A transaction with PeAddresses costs exactly what one transaction a run would, all sent with the same
 /// delay: the runs are booked one after the other from one arrival. The delay out is the end of the last.
+///
+/// With an agenda it also speaks the four phases: it takes up to ddr.queue_transactions, ends the request of
+/// the last one when another is over, and begins the response of each in the cycle after its last byte.
 class MonoDdr : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<MonoDdr> socket{"socket"};
 
-  MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock);
+  MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+          Agenda* agenda = nullptr);
 
   const DdrStatistics& statistics() const { return timing_.statistics(); }
   LazyMemory& memory() { return memory_; }
@@ -32,8 +39,14 @@ class MonoDdr : public sc_core::sc_module {
   unsigned int transport_dbg(tlm::tlm_generic_payload& transaction);
   bool get_direct_mem_ptr(tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi);
 
-  tlm::tlm_response_status access_plainly(const tlm::tlm_generic_payload& transaction,
-                                          sc_core::sc_time& delay);
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& transaction, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay);
+
+  std::optional<Cycles> take(tlm::tlm_generic_payload& transaction);
+  void finish(tlm::tlm_generic_payload& transaction);
+  /// Sets `finish` if it returns OK.
+  tlm::tlm_response_status access_plainly(const tlm::tlm_generic_payload& transaction, Cycles arrival,
+                                          Cycles& finish);
   tlm::tlm_response_status serve(PeAddresses& addresses, sc_core::sc_time& delay);
   bool contains(std::uint64_t address, std::uint64_t bytes) const {
     return address <= memory_.size_bytes() && bytes <= memory_.size_bytes() - address;
@@ -43,6 +56,12 @@ class MonoDdr : public sc_core::sc_module {
   DdrTiming timing_;
   LazyMemory memory_;
   Cycles dmi_latency_cycles_;
+
+  Agenda* agenda_;
+  std::optional<AtTarget> at_target_;
+  int queue_transactions_;
+  int queued_ = 0;
+  tlm::tlm_generic_payload* not_accepted_ = nullptr;  ///< fills the queue; its request has not been ended
 };
 
 }  // namespace model

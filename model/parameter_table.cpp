@@ -259,6 +259,10 @@ void declare_pio(Parameters& table) {
   table.push_back(integer<group, &Pio::stolen_sram_cycles>(
       "pio.stolen_sram_cycles", "cycles", 1, {0, 1000}, assumed,
       "cycles of the SRAM port that 8 transferred bytes take from the kernel [reference, section 2]"));
+  table.push_back(integer<group, &Pio::outstanding_packets>(
+      "pio.outstanding_packets", "packets", 32, {1, 1024}, assumed,
+      "on the way to mono memory at a time: accesses carry transaction ids [S15g], how many is not known; "
+      "felt by approximately timed runs only"));
 }
 
 void declare_clear_connect(Parameters& table) {
@@ -318,6 +322,10 @@ void declare_ddr_timing(Parameters& table) {
   table.push_back(integer<group, &Ddr::ecc_cycles>(
       "ddr.ecc_cycles", "cycles", 0, {0, kMaxCycles}, assumed,
       "added to each access; 72-bit modules carry ECC beside the data [S1], so none is assumed"));
+  table.push_back(integer<group, &Ddr::queue_transactions>(
+      "ddr.queue_transactions", "transactions", 16, {1, 1024}, assumed,
+      "that the memory controller takes at a time, enough to hide a page hit; felt by approximately timed "
+      "runs only"));
 }
 
 void declare_host(Parameters& table) {

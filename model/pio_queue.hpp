@@ -46,11 +46,15 @@ class PioQueue {
   std::optional<Start> next() const;
   /// Takes that request out of the queue; its engine is busy until `finish`.
   void begin(const Start& start, Cycles finish);
+  /// The same when nobody knows until when; the engine starts nothing before it is told.
+  void begin(const Start& start) { begin(start, kNotYetKnown); }
+  void finish(int engine, Cycles finish) { engine_[std::size_t(engine)].free = finish; }
 
   int engines() const { return arbitration_ == PioArbitration::queue_per_direction ? 2 : 1; }
   int engine_of(cn::Direction direction) const { return engines() == 1 ? 0 : static_cast<int>(direction); }
 
  private:
+  static constexpr Cycles kNotYetKnown = ~Cycles{0};
   struct Engine {
     std::vector<Entry> queue;  ///< in the order of arrival
     Cycles free = 0;

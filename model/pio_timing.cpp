@@ -14,6 +14,13 @@ Cycles PioTiming::data_cycles(const MonoPieces& pieces) const {
   return cycles_for(std::uint64_t(pieces.bytes_per_pe()), bytes_per_cycle_);
 }
 
+Cycles PioTiming::address_cycles(const MonoPieces& pieces, int piece) const {
+  const auto misaligned_up_to = [&](int end) {
+    return Cycles(pieces.misaligned()) * Cycles(end) / Cycles(pieces.pieces());
+  };
+  return per_pe_cycles_ + (misaligned_up_to(piece + 1) - misaligned_up_to(piece)) * misalignment_cycles_;
+}
+
 Cycles PioTiming::pe_cycles(const MonoPieces& pieces) const {
   return Cycles(pieces.pieces()) * (per_pe_cycles_ + data_cycles(pieces)) +
          Cycles(pieces.misaligned()) * misalignment_cycles_;

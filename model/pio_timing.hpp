@@ -26,7 +26,11 @@ class PioTiming {
   explicit PioTiming(const ChipConfig::Pio& config);
 
   Cycles setup_cycles() const { return setup_cycles_; }
-  /// The PE side of all pieces, without setup.
+  /// Reading and sending the address of one piece. Misalignment is spread evenly over the pieces.
+  Cycles address_cycles(const MonoPieces& pieces, int piece) const;
+  /// The data of one piece.
+  Cycles data_cycles(const MonoPieces& pieces) const;
+  /// The PE side of all pieces, without setup: the sum of the above.
   Cycles pe_cycles(const MonoPieces& pieces) const;
   /// When the memory side of a request that starts at `start` begins.
   Cycles memory_start(const MonoPieces& pieces, Cycles start) const;
@@ -34,8 +38,6 @@ class PioTiming {
   Cycles finish(const MonoPieces& pieces, Cycles start, Cycles memory_end) const;
 
  private:
-  Cycles data_cycles(const MonoPieces& pieces) const;
-
   Cycles setup_cycles_;
   Cycles per_pe_cycles_;
   std::uint64_t bytes_per_cycle_;

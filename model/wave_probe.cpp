@@ -82,19 +82,29 @@ WaveProbe::~WaveProbe() {
   if (window_ == Window::open) close_at_end_of_run();
 }
 
-void WaveProbe::spent(CycleCause cause, Cycles start, Cycles finish, int semaphore) {
+void WaveProbe::began(CycleCause cause, Cycles start, int semaphore) {
   change(start, WaveSignal::control_state, std::uint64_t(cause) + 1);
   change(start, WaveSignal::control_semaphore, semaphore < 0 ? kNoSemaphore : std::uint64_t(semaphore));
+  span_.emplace(start, cause);
+}
+
+void WaveProbe::spent(CycleCause cause, Cycles start, Cycles finish, int semaphore) {
+  if (span_ != std::pair(start, cause)) began(cause, start, semaphore);
   // The next span, if one follows at once, replaces these in the same cycle.
   change(finish, WaveSignal::control_state, 0);
   change(finish, WaveSignal::control_semaphore, kNoSemaphore);
   if (cause == CycleCause::data_cache) change_memory_counters(finish);
 }
 
-void WaveProbe::ran_kernel(const char* name, Cycles start, Cycles finish, int enabled_pes) {
+void WaveProbe::began_kernel(const char* name, Cycles start, int enabled_pes) {
   change(start, WaveSignal::control_kernel, kernel_number(name));
   change(start, WaveSignal::pe_array_busy, 1);
   change(start, WaveSignal::pe_array_enabled_pes, std::uint64_t(enabled_pes));
+  kernel_start_ = start;
+}
+
+void WaveProbe::ran_kernel(const char* name, Cycles start, Cycles finish, int enabled_pes) {
+  if (kernel_start_ != start) began_kernel(name, start, enabled_pes);
   change(finish, WaveSignal::control_kernel, 0);
   change(finish, WaveSignal::pe_array_busy, 0);
   change(finish, WaveSignal::pe_array_enabled_pes, 0);

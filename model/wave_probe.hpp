@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <stdexcept>
 #include <string>
 #include <systemc>
+#include <utility>
 #include <vector>
 
 #include "model/clock_domain.hpp"
@@ -52,6 +54,8 @@ class WaveProbe : public sc_core::sc_module, public ControlObserver, public PioO
   /// Closes the file; whether it is complete only finish() tells.
   ~WaveProbe() override;
 
+  void began(CycleCause cause, Cycles start, int semaphore) override;
+  void began_kernel(const char* name, Cycles start, int enabled_pes) override;
   void spent(CycleCause cause, Cycles start, Cycles finish, int semaphore) override;
   void ran_kernel(const char* name, Cycles start, Cycles finish, int enabled_pes) override;
   void started(const PioEvent& event) override;
@@ -112,6 +116,8 @@ class WaveProbe : public sc_core::sc_module, public ControlObserver, public PioO
   sc_core::sc_time window_start_;
   sc_core::sc_time window_end_;
   std::vector<std::string> kernel_names_;
+  std::optional<std::pair<Cycles, CycleCause>> span_;  ///< that began last
+  std::optional<Cycles> kernel_start_;
   std::uint64_t late_changes_ = 0;
 };
 

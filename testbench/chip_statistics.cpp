@@ -76,7 +76,7 @@ ChipStatistics collect_statistics(const model::Csx600& chip, model::Cycles total
   statistics.all_kernels = chip.pe_array.total();
   statistics.pio = chip.dma_engine.statistics();
   statistics.poly_sram = chip.poly_sram.statistics();
-  statistics.ddr = chip.mono_ddr.statistics();
+  statistics.ddr = chip.ddr_statistics();
   statistics.bus_pio = chip.clear_connect.statistics(model::Initiator::pio);
   statistics.bus_control = chip.clear_connect.statistics(model::Initiator::control);
   statistics.host_link = chip.host_link.statistics();

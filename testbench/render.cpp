@@ -101,7 +101,7 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
                             const RenderProgress& progress) {
   return with_input_errors([&] {
     Run run(scene, options, progress);
-    model::Csx600 chip("csx600", options.chip);
+    model::Csx600 chip("csx600", options.chip, options.timing);
     HostPc host("host", chip, run.image(), run.result().film);
     std::optional<WaveFiles> waves;
     if (options.waves) waves.emplace(*options.waves, chip);

@@ -7,6 +7,7 @@
 
 #include "firmware/path_tracer/kernels.hpp"
 #include "model/chip_config.hpp"
+#include "model/timing_style.hpp"
 #include "testbench/chip_statistics.hpp"
 #include "testbench/film.hpp"
 #include "testbench/scene/scene.hpp"
@@ -18,6 +19,7 @@ struct RenderOptions {
   model::ChipConfig chip;
   path_tracer::ProgramConfig program;
   path_tracer::Work work;
+  model::TimingStyle timing = model::TimingStyle::loosely_timed;
   path_tracer::Level level = path_tracer::Level::x86_64_v2;
   std::optional<WaveOptions> waves;  ///< on the chip only
 };

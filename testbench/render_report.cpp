@@ -63,6 +63,10 @@ void add_host_rows(const RenderRequest& request, const RenderResult& result, Row
                     text("%.1f times", rate / silicon) + text(" (paper: %.0f segments/s)", silicon));
 }
 
+const char* timing_name(model::TimingStyle timing) {
+  return timing == model::TimingStyle::approximately_timed ? "at" : "lt";
+}
+
 }  // namespace
 
 Json render_statistics(const RenderRequest& request, const RenderResult& result) {
@@ -73,6 +77,7 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   json["height"] = result.film.size().height;
   json["firmware"] = program_json(request.options);
   json["machine"] = request.native ? "native" : "chip";
+  json["timing"] = request.native ? "none" : timing_name(request.options.timing);
   json["chip_preset"] = request.options.chip.preset;
   json["chip_config"] = model::effective_toml(request.options.chip);
   if (result.chip) {

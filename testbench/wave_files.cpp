@@ -17,7 +17,7 @@ constexpr model::Cycles kSyncCycles = 50'000;
 constexpr std::uint64_t kViewPicoseconds = 300'000'000;
 
 model::MemoryCounters memory_counters(const model::Csx600& chip) {
-  const model::DdrStatistics& ddr = chip.mono_ddr.statistics();
+  const model::DdrStatistics ddr = chip.ddr_statistics();
   return {ddr.page_hits, ddr.page_misses, ddr.bytes_read, ddr.bytes_written,
           chip.clear_connect.statistics(model::Initiator::pio).bytes};
 }

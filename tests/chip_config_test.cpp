@@ -145,7 +145,7 @@ TEST(ParameterTable, CoversEveryField) {
   EXPECT_EQ(keys_of("ddr"), field_count<std::decay_t<decltype(ddr)>>());
   EXPECT_EQ(keys_of("host"), field_count<std::decay_t<decltype(host)>>());
   EXPECT_EQ(field_count<ChipConfig::Chip>(), 2U);
-  EXPECT_EQ(field_count<ChipConfig::Pio>(), 8U);
+  EXPECT_EQ(field_count<ChipConfig::Pio>(), 9U);
 }
 
 TEST(ParameterTable, InstructionClassesKeepTheirNamesAndPlaces) {

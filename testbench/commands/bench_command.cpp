@@ -8,6 +8,7 @@ void add_bench_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("bench", "Measure how good and how fast the renderer is");
   command.require_subcommand(1);
   add_bench_speed_command(command);
+  add_bench_timing_command(command);
 }
 
 }  // namespace testbench

@@ -53,6 +53,18 @@ model::ChipConfig SetOptions::chip(const std::string& name) const {
   }
 }
 
+void TimingOption::add_to(CLI::App& command) {
+  command
+      .add_option("--timing", text_,
+                  "lt: loosely timed, fast; at: approximately timed, packet by packet in SystemC time")
+      ->check(CLI::IsMember({"lt", "at"}))
+      ->capture_default_str();
+}
+
+model::TimingStyle TimingOption::style() const {
+  return text_ == "at" ? model::TimingStyle::approximately_timed : model::TimingStyle::loosely_timed;
+}
+
 void LevelOption::add_to(CLI::App& command) {
   command.add_option("--level", level_, "x86-64 level of the kernels: auto, v2, v3 or v4")
       ->check(CLI::IsMember({"auto", "v2", "v3", "v4"}))

@@ -7,6 +7,7 @@
 #include "firmware/path_tracer/kernels.hpp"
 #include "model/chip_config.hpp"
 #include "testbench/scene/scene.hpp"
+#include "model/timing_style.hpp"
 
 namespace testbench {
 
@@ -33,6 +34,17 @@ class ChipOptions {
  private:
   std::string chip_;
   SetOptions settings_;
+};
+
+/// --timing.
+class TimingOption {
+ public:
+  void add_to(CLI::App& command);
+  model::TimingStyle style() const;
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_ = "lt";
 };
 
 /// --level: which build of the kernels runs; the bits are the same from each.

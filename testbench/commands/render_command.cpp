@@ -23,6 +23,7 @@ struct RenderCommand {
   std::string size;
   RenderOptions options;
   ChipOptions chip;
+  TimingOption timing;
   LevelOption level;
   std::string program = "full";
   std::string buffer = "both";
@@ -89,10 +90,13 @@ RenderRequest RenderCommand::make_request() const {
   RenderRequest request{scene, options, native};
   request.options.program.program = program_named(program);
   request.options.chip = chip.chip();
+  request.options.timing = timing.style();
   request.options.level = level.level();
   request.options.program.buffer_loads = buffer == "both" || buffer == "loads";
   request.options.program.buffer_saves = buffer == "both" || buffer == "saves";
   request.options.program.cull_shadow_rays = shadow_rays == "facing";
+  if (native && request.options.timing == model::TimingStyle::approximately_timed)
+    throw InputError("--timing: found at with --native, a native run has no clock; allowed is lt");
   if (!vcd.empty()) {
     if (native) throw InputError("--vcd: a native run has no clock and so no waves; leave out --native");
     WaveOptions waves;
@@ -187,6 +191,7 @@ void add_render_command(CLI::App& app) {
   command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
   add_firmware_options(command, *state);
   state->chip.add_to(command, "csx600");
+  state->timing.add_to(command);
   state->level.add_to(command);
   command.add_flag("--native", state->native, "Run the firmware without SystemC: same image, no time");
   command.add_option("--exr", state->exr, "Write the image as OpenEXR");

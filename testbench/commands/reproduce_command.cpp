@@ -27,6 +27,7 @@ struct Cell {
 struct ReproduceCommand {
   std::string scene = "scenes/cornell_box";
   ChipOptions chip;
+  TimingOption timing;
   LevelOption level;
   int samples = 4;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -134,6 +135,7 @@ Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
 RenderOptions ReproduceCommand::make_options() const {
   RenderOptions options;
   options.chip = chip.chip();
+  options.timing = timing.style();
   options.level = level.level();
   options.program = paper_program();
   options.work.samples = samples;
@@ -167,6 +169,7 @@ void add_reproduce_command(CLI::App& app) {
   const auto state = std::make_shared<ReproduceCommand>();
   command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
   state->chip.add_to(command, "paper");
+  state->timing.add_to(command);
   state->level.add_to(command);
   command.add_option("--samples", state->samples, "Paths a pixel")
       ->check(CLI::Range(1, 1 << 20))

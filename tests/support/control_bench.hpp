@@ -40,7 +40,9 @@ class ControlBench : public SystemCFixture {
  protected:
   using Firmware = std::function<void(cn::Machine&)>;
 
-  void build(const model::ChipConfig& config) { chip = std::make_unique<model::Csx600>("chip", config); }
+  void build(const model::ChipConfig& config, model::TimingStyle timing = model::TimingStyle::loosely_timed) {
+    chip = std::make_unique<model::Csx600>("chip", config, timing);
+  }
 
   /// Until nothing happens any more; what the firmware threw stays in the control unit.
   void run(Firmware firmware) {
@@ -60,7 +62,7 @@ class ControlBench : public SystemCFixture {
 
   const model::ControlStatistics& statistics() const { return chip->control_unit.statistics(); }
   model::Cycles spent(model::CycleCause cause) const { return statistics()[cause]; }
-  std::uint8_t* mono() { return chip->mono_ddr.memory().data(); }
+  std::uint8_t* mono() { return chip->mono_ddr->memory().data(); }
 
   /// 8 x 32 bytes without gaps: 100 setup + 8 x (10 + 4) = 212 cycles in the engine, either way.
   static constexpr model::Cycles kRequestCycles = 212;

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
+#include "model/agenda.hpp"
 #include "model/clear_connect.hpp"
 #include "model/dma_engine.hpp"
 #include "model/mono_ddr.hpp"
 #include "model/poly_sram.hpp"
+#include "model/timing_style.hpp"
+#include "tests/support/protocol_checker.hpp"
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/test_chip.hpp"
 #include "tests/support/tlm_testers.hpp"
@@ -22,21 +26,56 @@ inline model::ChipConfig chip_with(model::PioArbitration arbitration) {
   return config;
 }
 
+/// A process for what a test does; an approximately timed unit lets time pass in its calls.
+class Driver : public sc_core::sc_module {
+ public:
+  explicit Driver(const sc_core::sc_module_name& name) : sc_module(name) {
+    SC_HAS_PROCESS(Driver);
+    SC_THREAD(run);
+  }
+  std::function<void()> body;
+
+ private:
+  void run() {
+    if (body) body();
+  }
+};
+
 /// PIO engine, network, SRAM and a memory, driven by the test in the place of the control unit.
 class PioBench : public SystemCFixture {
  protected:
   void build(const model::ChipConfig& chip) {
-    prepare(chip);
-    ddr = std::make_unique<model::MonoDdr>("ddr", chip, clock);
-    network->ddr_socket.bind(ddr->socket);
+    build_unelaborated(chip);
     elaborate();
+  }
+  /// For tests whose body is run(): on one chip or the other the same calls.
+  void build(const model::ChipConfig& chip, model::TimingStyle style) {
+    if (style == model::TimingStyle::approximately_timed)
+      agenda = std::make_unique<model::Agenda>("agenda", clock);
+    build_unelaborated(chip);
+  }
+  void build_unelaborated(const model::ChipConfig& chip) {
+    prepare(chip);
+    ddr = std::make_unique<model::MonoDdr>("ddr", chip, clock, agenda.get());
+    network->ddr_socket.bind(at_memory.in);
+    at_memory.out.bind(ddr->socket);
+  }
+  /// Runs `body` in a process until nothing happens any more.
+  void run(std::function<void()> body) {
+    driver.body = std::move(body);
+    sc_core::sc_start();
+    EXPECT_EQ(at_engine.violations(), std::vector<std::string>{});
+    EXPECT_EQ(at_memory.violations(), std::vector<std::string>{});
+    EXPECT_EQ(at_engine.active(), 0u);
+    EXPECT_EQ(at_memory.active(), 0u);
   }
   /// With a memory of another make in the place of MonoDdr.
   void build_with_minimal_memory(const model::ChipConfig& chip, double latency_nanoseconds) {
     prepare(chip);
     minimal = std::make_unique<MinimalMemory>("minimal", chip.ddr.size_bytes,
                                               sc_core::sc_time(latency_nanoseconds, sc_core::SC_NS));
-    network->ddr_socket.bind(minimal->socket);
+    network->ddr_socket.bind(at_memory.in);
+    at_memory.out.bind(minimal->socket);
     elaborate();
   }
 
@@ -80,7 +119,24 @@ class PioBench : public SystemCFixture {
     return semaphores.signals[semaphore].empty() ? 0 : semaphores.signals[semaphore].back();
   }
 
+  void prepare(const model::ChipConfig& chip) {
+    poly = std::make_unique<cn::PolyMemory>(chip.chip.pes, chip.poly.sram_bytes);
+    engine = std::make_unique<model::DmaEngine>("engine", chip, clock, *poly, agenda.get());
+    sram = std::make_unique<model::PolySram>("sram", chip, *poly);
+    network = std::make_unique<model::ClearConnect>("network", chip, clock, agenda.get());
+    engine->semaphores.bind(semaphores);
+    engine->mono_socket.bind(at_engine.in);
+    at_engine.out.bind(network->pio_socket);
+    engine->poly_socket.bind(sram->pio_socket);
+    control.socket.bind(network->control_socket);
+    host.socket.bind(network->host_socket);
+  }
+
   model::ClockDomain clock{1e9};
+  std::unique_ptr<model::Agenda> agenda;
+  ProtocolChecker at_engine{"at_engine"};  ///< between engine and network
+  ProtocolChecker at_memory{"at_memory"};  ///< between network and memory
+  Driver driver{"driver"};
   std::unique_ptr<cn::PolyMemory> poly;
   std::unique_ptr<model::DmaEngine> engine;
   std::unique_ptr<model::PolySram> sram;
@@ -90,19 +146,6 @@ class PioBench : public SystemCFixture {
   SignalRecorder semaphores{"semaphores"};
   TestInitiator control{"control"};
   TestInitiator host{"host"};
-
- private:
-  void prepare(const model::ChipConfig& chip) {
-    poly = std::make_unique<cn::PolyMemory>(chip.chip.pes, chip.poly.sram_bytes);
-    engine = std::make_unique<model::DmaEngine>("engine", chip, clock, *poly);
-    sram = std::make_unique<model::PolySram>("sram", chip, *poly);
-    network = std::make_unique<model::ClearConnect>("network", chip, clock);
-    engine->semaphores.bind(semaphores);
-    engine->mono_socket.bind(network->pio_socket);
-    engine->poly_socket.bind(sram->pio_socket);
-    control.socket.bind(network->control_socket);
-    host.socket.bind(network->host_socket);
-  }
 };
 
 }  // namespace test_support

@@ -22,6 +22,7 @@ inline model::ChipConfig test_chip(int pes = 8) {
   config.pio.misalignment_cycles = 5;
   config.pio.consolidate_equal_addresses = false;
   config.pio.stolen_sram_cycles = 1;
+  config.pio.outstanding_packets = 32;
   config.clear_connect.bytes_per_cycle = 8;
   config.clear_connect.packet_bytes = 64;
   config.clear_connect.hop_cycles = 2;
@@ -36,6 +37,7 @@ inline model::ChipConfig test_chip(int pes = 8) {
   config.ddr.refresh_interval_cycles = 0;
   config.ddr.refresh_cycles = 0;
   config.ddr.ecc_cycles = 0;
+  config.ddr.queue_transactions = 16;
   config.host.bytes_per_second = 1e9;
   config.host.latency_cycles = 1000;
   return config;

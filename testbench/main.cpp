@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   testbench::add_render_command(app);
   testbench::add_reproduce_command(app);
   testbench::add_params_command(app);
+  testbench::add_bench_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

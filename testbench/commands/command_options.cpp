@@ -1,11 +1,33 @@
 #include "testbench/commands/command_options.hpp"
 
+#include <cstdio>
+#include <optional>
+
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
 #include "testbench/error.hpp"
 #include "testbench/render.hpp"
+#include "testbench/scene/scene_file.hpp"
 
 namespace testbench {
+namespace {
+
+constexpr int kMaxFilmSide = 16384;
+
+/// "480x480".
+FilmSize parse_size(const std::string& text) {
+  long long width = 0;
+  long long height = 0;
+  char end = 0;
+  const bool two_numbers = std::sscanf(text.c_str(), "%lldx%lld%c", &width, &height, &end) == 2;
+  const auto allowed = [](long long side) { return side >= 1 && side <= kMaxFilmSide; };
+  if (!two_numbers || !allowed(width) || !allowed(height))
+    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " +
+                     std::to_string(kMaxFilmSide));
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+}  // namespace
 
 void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {
   chip_ = default_chip;
@@ -47,6 +69,24 @@ path_tracer::Level LevelOption::level() const {
     throw InputError("--level: found " + level_ + ", this machine executes levels up to v" +
                      std::to_string(2 + static_cast<int>(widest)));
   return wanted;
+}
+
+Scene load_scene_for_film(const std::string& path, const std::string& size) {
+  std::optional<FilmSize> film;
+  if (!size.empty()) film = parse_size(size);
+  Scene loaded = load_scene(path);
+  if (film) loaded.film = *film;
+  return loaded;
+}
+
+void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program) {
+  command
+      .add_option("--roulette-start", program.roulette_start,
+                  "Segments that a path lives without Russian roulette")
+      ->capture_default_str();
+  command.add_option("--seed", program.seed, "Seed of the random numbers")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 }
 
 }  // namespace testbench

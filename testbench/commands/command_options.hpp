@@ -6,6 +6,7 @@
 
 #include "firmware/path_tracer/kernels.hpp"
 #include "model/chip_config.hpp"
+#include "testbench/scene/scene.hpp"
 
 namespace testbench {
 
@@ -31,5 +32,11 @@ class LevelOption {
  private:
   std::string level_ = "auto";
 };
+
+/// Loads a scene; `size`, "480x480", takes the place of its film's unless it is empty. Throws InputError.
+Scene load_scene_for_film(const std::string& path, const std::string& size);
+
+/// How paths are sampled: --roulette-start, --seed. The defaults are the values in `program`.
+void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program);
 
 }  // namespace testbench

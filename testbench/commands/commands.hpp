@@ -9,5 +9,6 @@ namespace testbench {
 void add_render_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
 void add_params_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
 
 }  // namespace testbench

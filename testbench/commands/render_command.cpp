@@ -18,8 +18,6 @@
 namespace testbench {
 namespace {
 
-constexpr int kMaxFilmSide = 16384;
-
 struct RenderCommand {
   std::string scene;
   std::string size;
@@ -40,22 +38,8 @@ struct RenderCommand {
  private:
   void require_writable_outputs() const;
   RenderRequest make_request() const;
-  Scene load() const;
   void write_outputs(const RenderRequest& request, const RenderResult& result) const;
 };
-
-/// "480x480".
-FilmSize parse_size(const std::string& text) {
-  long long width = 0;
-  long long height = 0;
-  char end = 0;
-  const bool two_numbers = std::sscanf(text.c_str(), "%lldx%lld%c", &width, &height, &end) == 2;
-  const auto allowed = [](long long side) { return side >= 1 && side <= kMaxFilmSide; };
-  if (!two_numbers || !allowed(width) || !allowed(height))
-    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " +
-                     std::to_string(kMaxFilmSide));
-  return {static_cast<int>(width), static_cast<int>(height)};
-}
 
 /// "first:last", either may be missing.
 void parse_cycles(const std::string& text, WaveOptions& waves) {
@@ -118,14 +102,6 @@ RenderRequest RenderCommand::make_request() const {
   return request;
 }
 
-Scene RenderCommand::load() const {
-  std::optional<FilmSize> film;
-  if (!size.empty()) film = parse_size(size);
-  Scene loaded = load_scene(scene);
-  if (film) loaded.film = *film;
-  return loaded;
-}
-
 void RenderCommand::write_outputs(const RenderRequest& request, const RenderResult& result) const {
   if (!exr.empty()) write_exr(exr, result.film, render_provenance(request, result));
   if (!png.empty()) write_png(png, result.film);
@@ -137,7 +113,7 @@ void RenderCommand::run() {
   const RenderRequest request = make_request();
   require_writable_outputs();
   if (request.options.waves) require_writable_waves(*request.options.waves);
-  const Scene loaded = load();
+  const Scene loaded = load_scene_for_film(scene, size);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
     ProgressBar bar(native ? "render (native)" : "render");
@@ -173,13 +149,7 @@ void add_firmware_options(CLI::App& command, RenderCommand& state) {
       ->capture_default_str();
   command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")
       ->capture_default_str();
-  command
-      .add_option("--roulette-start", program.roulette_start,
-                  "Segments that a path lives without Russian roulette")
-      ->capture_default_str();
-  command.add_option("--seed", program.seed, "Seed of the random numbers")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_sampling_options(command, program);
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+#include "testbench/commands/bench_command.hpp"
+
+#include "testbench/commands/commands.hpp"
+
+namespace testbench {
+
+void add_bench_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("bench", "Measure how good and how fast the renderer is");
+  command.require_subcommand(1);
+  add_bench_reference_command(command);
+  add_bench_error_command(command);
+}
+
+}  // namespace testbench

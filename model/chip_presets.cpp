@@ -70,6 +70,7 @@ Preset g80_like() {
        {"poly.cycles.fp64_sincos", "2420", kAssumed, kRoutine},
        {"poly.cycles.fp64_exp", "1980", kAssumed, kRoutine},
        {"poly.cycles.fp64_log", "1980", kAssumed, kRoutine},
+       {"poly.cycles.fp64_atan2", "2420", kAssumed, kRoutine},
        {"poly.cycles.swazzle", "152", kAssumed, kByMemory},
        {"poly.cycles.reduce", "152", kAssumed, kByMemory}}};
 }

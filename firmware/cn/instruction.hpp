@@ -19,6 +19,7 @@ enum class InstructionClass : std::uint8_t {
   fp64_sincos,
   fp64_exp,
   fp64_log,
+  fp64_atan2,
   fp32_add,
   fp32_mul,
   fp32_div,
@@ -41,9 +42,10 @@ enum class InstructionClass : std::uint8_t {
 inline constexpr std::size_t kInstructionClasses = static_cast<std::size_t>(InstructionClass::mono) + 1;
 
 inline constexpr std::array<std::string_view, kInstructionClasses> kInstructionClassNames = {
-    "fp64_add",  "fp64_mul", "fp64_div",  "fp64_sqrt", "fp64_sincos", "fp64_exp",  "fp64_log",  "fp32_add",
-    "fp32_mul",  "fp32_div", "fp32_sqrt", "int16_alu", "int32_alu",   "int64_alu", "int16_mul", "int32_mul",
-    "int64_mul", "move",     "convert",   "enable",    "sram",        "swazzle",   "reduce",    "mono"};
+    "fp64_add",   "fp64_mul",  "fp64_div",  "fp64_sqrt", "fp64_sincos", "fp64_exp",  "fp64_log",
+    "fp64_atan2", "fp32_add",  "fp32_mul",  "fp32_div",  "fp32_sqrt",   "int16_alu", "int32_alu",
+    "int64_alu",  "int16_mul", "int32_mul", "int64_mul", "move",        "convert",   "enable",
+    "sram",       "swazzle",   "reduce",    "mono"};
 
 /// How many instructions of each class were issued.
 struct IssueCounts {

@@ -33,6 +33,7 @@ void IntersectionStage::process(std::uint64_t step, int block) {
   arguments.hit = from.hit;
   arguments.surface = from.surface;
   arguments.path = from.path;
+  arguments.sampler = context_.config.sampler;
   arguments.seed = context_.config.seed;
   arguments.roulette_start = context_.config.roulette_start;
   arguments.max_survival = context_.config.max_survival;

@@ -2,7 +2,8 @@
 
 #include "firmware/path_tracer/kernels.hpp"
 
-#include "firmware/path_tracer/sampling.hpp"
+#include "firmware/path_tracer/light_sampling.hpp"
+#include "firmware/path_tracer/sampler.hpp"
 #include "firmware/path_tracer/triangle.hpp"
 
 namespace path_tracer {
@@ -47,19 +48,20 @@ void scatter(const ScatterArguments& arguments) {
   const Direction3 surface_normal = arguments.surface.get(&SurfaceRecord::normal);
   const Direction3 normal = cn::select(front, surface_normal, surface_normal * -1.0);
   const Point3 position = arguments.hit.get(&HitRecord::position);
-  const Uniform4 random = uniform4(arguments.seed, pixel, sample, depth, Purpose::scatter);
+  const ScatterNumbers random = scatter_numbers(arguments.sampler, arguments.seed, pixel, sample, depth);
 
   // Russian roulette on the surface alone: the path before it need not be loaded.
   const mask safe = depth < arguments.roulette_start;
   const poly<double> survival = cn::select(
       safe, poly<double>(1.0), cn::min(largest(reflectance), poly<double>(arguments.max_survival)));
-  const mask goes_on = hit & (random.value[2] < survival) & (largest(reflectance) > 0.0);
+  const mask goes_on = hit & (random.roulette < survival) & (largest(reflectance) > 0.0);
   const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
 
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
   const mask emits = hit & front & (arguments.light_by_shadow_rays ? depth == 0 : depth >= 0);
   arguments.scatter.set(&ScatterRecord::position, position);
-  arguments.scatter.set(&ScatterRecord::direction, sample_cosine(normal, random.value[0], random.value[1]));
+  arguments.scatter.set(&ScatterRecord::direction,
+                        sample_cosine(normal, random.direction.u, random.direction.v));
   arguments.scatter.set(&ScatterRecord::radiance,
                         cn::select(emits, arguments.surface.get(&SurfaceRecord::emission), none));
   arguments.scatter.set(&ScatterRecord::weight, cn::select(goes_on, reflectance * inverse_survival, none));
@@ -69,14 +71,14 @@ void scatter(const ScatterArguments& arguments) {
                         cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
   if (!arguments.light_by_shadow_rays) return;
 
-  const Uniform4 on_light = uniform4(arguments.seed, pixel, sample, depth, Purpose::light);
-  const poly<std::int32_t> light = sample_cdf(arguments.light_cdf, arguments.light_count, random.value[3]);
-  arguments.light_place.write(place_of(arguments.lights, light, sizeof(LightRecord)));
+  const LightNumbers on_light = light_numbers(arguments.sampler, arguments.seed, pixel, sample, depth,
+                                              arguments.light_cdf, arguments.light_count);
+  arguments.light_place.write(place_of(arguments.lights, on_light.light, sizeof(LightRecord)));
   arguments.shadow.set(&ShadowRecord::position, position);
   arguments.shadow.set(&ShadowRecord::normal, normal);
   arguments.shadow.set(&ShadowRecord::reflectance_over_pi, reflectance * (1.0 / kPi));
-  arguments.shadow.set(&ShadowRecord::light_u, on_light.value[0]);
-  arguments.shadow.set(&ShadowRecord::light_v, on_light.value[1]);
+  arguments.shadow.set(&ShadowRecord::light_u, on_light.position.u);
+  arguments.shadow.set(&ShadowRecord::light_v, on_light.position.v);
   arguments.shadow.set(&ShadowRecord::face, face);
   cn::keep(hit & (largest(reflectance) > 0.0), *arguments.wants_light);
 }
@@ -84,22 +86,21 @@ void scatter(const ScatterArguments& arguments) {
 void shadow(const ShadowArguments& arguments) {
   const Point3 position = arguments.shadow.get(&ShadowRecord::position);
   const Direction3 normal = arguments.shadow.get(&ShadowRecord::normal);
-  const Point3 on_light =
-      sample_triangle(arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
-                      arguments.light.get(&LightRecord::edge2), arguments.shadow.get(&ShadowRecord::light_u),
-                      arguments.shadow.get(&ShadowRecord::light_v));
-  const Direction3 to_light = on_light - position;
-  const poly<double> distance_squared = dot(to_light, to_light);
-  const poly<double> cosine_here = dot(to_light, normal);  // both cosines are scaled by the distance
-  const poly<double> cosine_there = -dot(to_light, arguments.light.get(&LightRecord::normal));
-  const mask faces = (cosine_here > 0.0) & (cosine_there > 0.0);
+  const LightSurface surface{
+      arguments.light.get(&LightRecord::vertex), arguments.light.get(&LightRecord::edge1),
+      arguments.light.get(&LightRecord::edge2), arguments.light.get(&LightRecord::normal)};
+  const poly<double> u = arguments.shadow.get(&ShadowRecord::light_u);
+  const poly<double> v = arguments.shadow.get(&ShadowRecord::light_v);
+  const LightSample sample = arguments.light_sampling == LightSampling::area
+                                 ? sample_light_area(surface, position, normal, u, v)
+                                 : sample_light_solid_angle(surface, arguments.light.get(&LightRecord::shape),
+                                                            position, normal, u, v);
   const mask blocked =
-      is_blocked(position, to_light, arguments.shadow.get(&ShadowRecord::face),
+      is_blocked(position, sample.to_light, arguments.shadow.get(&ShadowRecord::face),
                  arguments.light.get(&LightRecord::face), arguments.triangles, arguments.triangle_count);
-  const mask sees = faces & !blocked;
-  const poly<double> geometry = cosine_here * cosine_there / (distance_squared * distance_squared);
+  const mask sees = (sample.weight > 0.0) & !blocked;
   const vec3<poly<double>> light = arguments.light.get(&LightRecord::emission_over_pdf) *
-                                   arguments.shadow.get(&ShadowRecord::reflectance_over_pi) * geometry;
+                                   arguments.shadow.get(&ShadowRecord::reflectance_over_pi) * sample.weight;
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
   arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
 }
@@ -140,7 +141,8 @@ void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_
                    pixel -= pixels;
                    sample += 1;
                  });
-  const CameraRay ray = sample_camera(*arguments.camera, arguments.seed, pixel, sample);
+  const UniformPair in_pixel = camera_numbers(arguments.sampler, arguments.seed, pixel, sample);
+  const CameraRay ray = sample_camera(*arguments.camera, pixel, in_pixel.u, in_pixel.v);
   arguments.ray.set(&RayRecord::origin, ray.origin);
   arguments.ray.set(&RayRecord::direction, ray.direction);
   arguments.ray.set(&RayRecord::left_face, poly<std::int32_t>(kNoFace));

@@ -29,6 +29,7 @@ struct ScatterArguments {
   PolyPointer<HitRecord> hit;
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<PathRecord> path;
+  Sampler sampler = Sampler::philox;
   std::uint64_t seed = 0;
   int roulette_start = 0;
   double max_survival = 0;
@@ -46,6 +47,7 @@ struct ScatterArguments {
 struct ShadowArguments {
   PolyPointer<ShadowRecord> shadow;
   PolyPointer<LightRecord> light;
+  LightSampling light_sampling = LightSampling::area;
   const TriangleRecord* triangles = nullptr;
   int triangle_count = 0;
   PolyPointer<DirectLightRecord> direct_light;
@@ -75,6 +77,7 @@ struct ReplaceArguments {
   const LaneMask* ended = nullptr;
   const LaneMask* finished = nullptr;
   const CameraRecord* camera = nullptr;
+  Sampler sampler = Sampler::philox;
   std::uint64_t seed = 0;
   std::int32_t next_pixel = 0;  ///< of the camera ray with number 0
   std::int32_t next_sample = 0;

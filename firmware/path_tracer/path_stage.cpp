@@ -99,6 +99,7 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   arguments.ended = &ended_;
   arguments.finished = &finished_;
   arguments.camera = context_.machine.read_mono(context_.layout.camera);
+  arguments.sampler = context_.config.sampler;
   arguments.seed = context_.config.seed;
   arguments.next_pixel = camera_rays_.next_pixel();
   arguments.next_sample = camera_rays_.next_sample();

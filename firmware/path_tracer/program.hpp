@@ -16,6 +16,18 @@ enum class Program : std::uint8_t {
   full,      ///< plus the radiance of finished paths
 };
 
+/// Where random numbers come from.
+enum class Sampler : std::uint8_t {
+  philox,  ///< independent
+  sobol,   ///< Owen-scrambled Sobol points: the samples of a pixel are stratified
+};
+
+/// How a point on a light is chosen.
+enum class LightSampling : std::uint8_t {
+  area,         ///< uniform on its surface
+  solid_angle,  ///< uniform in the solid angle it takes, warped to the cosine at the lit surface
+};
+
 inline constexpr int kMaxBuffers = 8;
 
 /// Far beyond what fits the chip; so that slot numbers stay within 32 bits.
@@ -35,6 +47,8 @@ struct ProgramConfig {
   int slot_vertices = 16;      ///< vertices a path slot holds; a multiple of kVerticesPerLoad
   int roulette_start = 0;      ///< segments a path lives without roulette
   double max_survival = 0.95;  ///< so that paths between white surfaces end
+  Sampler sampler = Sampler::philox;
+  LightSampling light_sampling = LightSampling::area;
   std::uint64_t seed = 1;
 
   int load_buffers() const { return buffer_loads ? n + 1 : 1; }

@@ -41,7 +41,12 @@ struct SurfaceRecord {
   std::int32_t unused = 0;
 };
 
-/// A triangle that emits from its front.
+enum class LightShape : std::int32_t {
+  triangle,   ///< of edge1 and edge2
+  rectangle,  ///< the parallelogram of edge1 and edge2, which are orthogonal
+};
+
+/// A triangle or rectangle that emits from its front, where edge1 x edge2 points.
 struct LightRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};
@@ -49,7 +54,7 @@ struct LightRecord {
   vec3<double> normal{};
   vec3<double> emission_over_pdf{};  ///< emission / (probability of this light / its area)
   std::int32_t face = kNoFace;
-  std::int32_t unused = 0;
+  std::int32_t shape = static_cast<std::int32_t>(LightShape::triangle);
 };
 
 /// Ray bin.

@@ -21,6 +21,7 @@ void ShadowStage::process(std::uint64_t step, int block) {
   ShadowArguments arguments;
   arguments.shadow = from.shadow;
   arguments.light = from.light;
+  arguments.light_sampling = context_.config.light_sampling;
   arguments.triangle_count = context_.layout.triangle_count;
   arguments.triangles =
       context_.machine.read_mono(context_.layout.triangles, std::size_t(arguments.triangle_count));

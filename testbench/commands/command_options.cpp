@@ -1,11 +1,13 @@
 #include "testbench/commands/command_options.hpp"
 
 #include <cstdio>
+#include <map>
 #include <optional>
 
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
 #include "testbench/error.hpp"
+#include "testbench/program_names.hpp"
 #include "testbench/render.hpp"
 #include "testbench/scene/scene_file.hpp"
 
@@ -80,9 +82,26 @@ Scene load_scene_for_film(const std::string& path, const std::string& size) {
 }
 
 void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program) {
+  using path_tracer::LightSampling;
+  using path_tracer::Sampler;
+  command
+      .add_option("--sampler", program.sampler, "Random numbers: philox (independent) or sobol (stratified)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Sampler>{{"philox", Sampler::philox}, {"sobol", Sampler::sobol}}))
+      ->default_str(sampler_name(program.sampler));
+  command
+      .add_option("--light-sampling", program.light_sampling,
+                  "Points of a light: uniform in its area, or in the solid_angle it takes")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, LightSampling>{
+          {"area", LightSampling::area}, {"solid_angle", LightSampling::solid_angle}}))
+      ->default_str(light_sampling_name(program.light_sampling));
   command
       .add_option("--roulette-start", program.roulette_start,
                   "Segments that a path lives without Russian roulette")
+      ->capture_default_str();
+  command
+      .add_option("--max-survival", program.max_survival,
+                  "Largest probability with which roulette lets a path go on")
       ->capture_default_str();
   command.add_option("--seed", program.seed, "Seed of the random numbers")
       ->check(CLI::NonNegativeNumber)

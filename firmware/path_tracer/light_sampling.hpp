@@ -40,6 +40,7 @@ inline poly<double> sample_linear(const poly<double>& u, const poly<double>& at_
   return cn::min(u * (at_0 + at_1) / (at_0 + root), poly<double>(1.0));
 }
 
+/// A point of the unit square and its density.
 struct SquareSample {
   poly<double> u;
   poly<double> v;
@@ -64,7 +65,7 @@ inline poly<double> corner_value(const poly<double>& cosine) {
   return cn::max(cosine, poly<double>(kLeast));
 }
 
-/// Uniform in area; both cosines are scaled by the distance.
+/// The point that to_light reaches, uniform in area; both cosines are scaled by the distance.
 inline LightSample weigh_by_area(const Direction3& to_light, const Direction3& light_normal,
                                  const Direction3& normal) {
   const poly<double> distance_squared = dot(to_light, to_light);
@@ -82,94 +83,199 @@ inline LightSample sample_light_area(const LightSurface& light, const Point3& po
   return weigh_by_area(on_light - position, light.normal, normal);
 }
 
-/// Below this solid angle its rounding would show, and a point uniform in area is as good: both densities
-/// differ by the light's extent over its distance only, or the light is seen edge on.
-inline constexpr double kLeastSolidAngle = 1e-7;
+/// Below this solid angle rounding would show, and a point uniform in area is as good: the light is small for
+/// its distance, or seen edge on.
+inline constexpr double kLeastSolidAngle = 1e-6;
 
-/// A rectangle, uniform in solid angle (Urena, Fajardo, King, "An Area-Preserving Parametrization for
-/// Spherical Rectangles", CGF 32(4), 2013) under a warp to the cosine.
+/// Keeps quotients and roots of what rounding may take to zero or below it finite.
+inline poly<double> at_least_tiny(const poly<double>& value) {
+  return cn::max(value, poly<double>(1e-30));
+}
+
+/// A direction in the solid angle that a light takes.
+struct SolidAngleSample {
+  Direction3 to_light;
+  poly<double> solid_angle;
+  poly<double> pdf;  ///< over the unit square that is mapped onto the solid angle
+};
+
+inline LightSample weigh_by_solid_angle(const SolidAngleSample& sample, const Direction3& normal,
+                                        const poly<double>& area) {
+  const poly<double> cosine = dot(sample.to_light, normal) / cn::sqrt(dot(sample.to_light, sample.to_light));
+  return {sample.to_light, cosine * sample.solid_angle / (sample.pdf * area)};
+}
+
+/// A rectangle from a point in front of it. In coordinates along its edges its corners are (x0|x1, y0|y1,
+/// -z), r are their distances.
 ///
-/// In coordinates along the edges the corners are (x0|x1, y0|y1, -z) and r their distances. The angles of the
-/// complex numbers z r + i x y are arcsines of what the paper takes arccosines of, and products of such
-/// numbers add angles: one arctangent instead of four arccosines, no rounding to outside their range.
-inline LightSample sample_light_rectangle(const LightSurface& light, const Point3& position,
-                                          const Direction3& normal, const poly<double>& u,
-                                          const poly<double>& v) {
-  const Direction3 to_vertex = light.vertex - position;
-  const poly<double> z = -dot(to_vertex, light.normal);
-  const poly<double> length1 = cn::sqrt(dot(light.edge1, light.edge1));
-  const poly<double> length2 = cn::sqrt(dot(light.edge2, light.edge2));
-  const poly<double> x0 = dot(to_vertex, light.edge1) / length1;
-  const poly<double> y0 = dot(to_vertex, light.edge2) / length2;
-  const poly<double> x1 = x0 + length1;
-  const poly<double> y1 = y0 + length2;
-  const poly<double> zz = z * z;
-  const poly<double> y0z_squared = y0 * y0 + zz;
-  const poly<double> y1z_squared = y1 * y1 + zz;
-  const poly<double> r00 = cn::sqrt(x0 * x0 + y0z_squared);
-  const poly<double> r10 = cn::sqrt(x1 * x1 + y0z_squared);
-  const poly<double> r01 = cn::sqrt(x0 * x0 + y1z_squared);
-  const poly<double> r11 = cn::sqrt(x1 * x1 + y1z_squared);
+/// The angles of the complex numbers z r + i x y are the arcsines that take the place of Urena's arccosines,
+/// and products of such numbers add angles. So one arctangent does for four arccosines, whose arguments
+/// rounding could not be trusted to keep within [-1, 1].
+struct RectangleView {
+  poly<double> length1, length2;
+  poly<double> x0, x1, y0, y1, z;
+  poly<double> r00, r10, r01, r11;
+  poly<double> left_real, left_imaginary;  ///< angle of the arc between the corners at x0, in (-pi, pi)
+  poly<double> solid_angle;
+};
 
-  // Angle between the corners at x0, and at x1; both in (0, pi).
-  const poly<double> left_real = zz * r01 * r00 + x0 * x0 * y1 * y0;
-  const poly<double> left_imaginary = z * x0 * (y1 * r00 - y0 * r01);
-  const poly<double> right_real = zz * r11 * r10 + x1 * x1 * y1 * y0;
-  const poly<double> right_imaginary = z * x1 * (y1 * r10 - y0 * r11);
-  const poly<double> turn = cn::atan2(right_imaginary * left_real - right_real * left_imaginary,
-                                      right_real * left_real + right_imaginary * left_imaginary);
-  const poly<double> solid_angle = cn::select(turn < 0.0, turn + 2.0 * kPi, turn);
+inline RectangleView view_rectangle(const LightSurface& light, const Direction3& to_vertex) {
+  RectangleView view;
+  view.length1.become(cn::sqrt(dot(light.edge1, light.edge1)));
+  view.length2.become(cn::sqrt(dot(light.edge2, light.edge2)));
+  view.x0.become(dot(to_vertex, light.edge1) / view.length1);
+  view.y0.become(dot(to_vertex, light.edge2) / view.length2);
+  view.x1.become(view.x0 + view.length1);
+  view.y1.become(view.y0 + view.length2);
+  view.z.become(-dot(to_vertex, light.normal));
+  const poly<double> zz = view.z * view.z;
+  const poly<double> x0_squared = view.x0 * view.x0;
+  const poly<double> x1_squared = view.x1 * view.x1;
+  const poly<double> y0z_squared = view.y0 * view.y0 + zz;
+  const poly<double> y1z_squared = view.y1 * view.y1 + zz;
+  view.r00.become(cn::sqrt(x0_squared + y0z_squared));
+  view.r10.become(cn::sqrt(x1_squared + y0z_squared));
+  view.r01.become(cn::sqrt(x0_squared + y1z_squared));
+  view.r11.become(cn::sqrt(x1_squared + y1z_squared));
+  const poly<double> yy = view.y1 * view.y0;
+  view.left_real.become(zz * view.r01 * view.r00 + x0_squared * yy);
+  view.left_imaginary.become(view.z * view.x0 * (view.y1 * view.r00 - view.y0 * view.r01));
+  const poly<double> right_real = zz * view.r11 * view.r10 + x1_squared * yy;
+  const poly<double> right_imaginary = view.z * view.x1 * (view.y1 * view.r10 - view.y0 * view.r11);
+  const poly<double> turn = cn::atan2(right_imaginary * view.left_real - right_real * view.left_imaginary,
+                                      right_real * view.left_real + right_imaginary * view.left_imaginary);
+  view.solid_angle.become(cn::select(turn < 0.0, turn + 2.0 * kPi, turn));  // at most 2 pi
+  return view;
+}
 
-  const poly<double> cosine_00 = dot(to_vertex, normal);
+/// The x that has the share u of the solid angle to its left.
+inline poly<double> rectangle_column(const RectangleView& view, const poly<double>& u) {
+  const poly<double> zz = view.z * view.z;
+  const poly<double> y0z = cn::sqrt(view.y0 * view.y0 + zz);
+  const poly<double> y1z = cn::sqrt(view.y1 * view.y1 + zz);
+  const poly<double> left_size = (view.x0 * view.x0 + zz) * y0z * y1z;
+  const cn::SineCosine part = cn::sincos(u * view.solid_angle);
+  const poly<double> cosine = (view.left_real * part.cosine - view.left_imaginary * part.sine) / left_size;
+  const poly<double> sine = (view.left_imaginary * part.cosine + view.left_real * part.sine) / left_size;
+  const poly<double> c0 = view.y0 / y0z;
+  const poly<double> lean = view.y1 / y1z - c0 * cosine;
+  const poly<double> size_squared = lean * lean + (c0 * c0 - 1.0) * (sine * sine);
+  const poly<double> x = cn::flip_sign(view.z * sine, lean) / cn::sqrt(at_least_tiny(size_squared));
+  return cn::min(cn::max(x, view.x0), view.x1);
+}
+
+/// Within a column the sine of the elevation is uniform.
+inline poly<double> rectangle_row(const RectangleView& view, const poly<double>& x, const poly<double>& v) {
+  const poly<double> column_squared = x * x + view.z * view.z;
+  const poly<double> low = view.y0 / cn::sqrt(column_squared + view.y0 * view.y0);
+  const poly<double> high = view.y1 / cn::sqrt(column_squared + view.y1 * view.y1);
+  const poly<double> sine = lerp(low, high, v);
+  const poly<double> y = sine * cn::sqrt(column_squared / at_least_tiny(1.0 - sine * sine));
+  return cn::min(cn::max(y, view.y0), view.y1);
+}
+
+/// Uniform in solid angle (Urena, Fajardo, King, "An Area-Preserving Parametrization for Spherical
+/// Rectangles", CGF 32(4), 2013) under a warp to the cosine.
+inline SolidAngleSample sample_rectangle(const LightSurface& light, const RectangleView& view,
+                                         const Direction3& to_vertex, const Direction3& normal,
+                                         const poly<double>& u, const poly<double>& v) {
+  const poly<double> height_00 = dot(to_vertex, normal);
   const poly<double> along1 = dot(light.edge1, normal);
   const poly<double> along2 = dot(light.edge2, normal);
   const SquareSample warped = sample_bilinear(
-      {corner_value(cosine_00 / r00), corner_value((cosine_00 + along1) / r10),
-       corner_value((cosine_00 + along2) / r01), corner_value((cosine_00 + along1 + along2) / r11)},
+      {corner_value(height_00 / view.r00), corner_value((height_00 + along1) / view.r10),
+       corner_value((height_00 + along2) / view.r01), corner_value((height_00 + along1 + along2) / view.r11)},
       u, v);
-
-  // The column x that has the share u of the solid angle to its left.
-  const poly<double> y0z = cn::sqrt(y0z_squared);
-  const poly<double> y1z = cn::sqrt(y1z_squared);
-  const poly<double> left_scale = 1.0 / ((x0 * x0 + zz) * y0z * y1z);
-  const cn::SineCosine part = cn::sincos(warped.u * solid_angle);
-  const poly<double> cosine = (left_real * part.cosine - left_imaginary * part.sine) * left_scale;
-  const poly<double> sine = (left_imaginary * part.cosine + left_real * part.sine) * left_scale;
-  const poly<double> c0 = y0 / y0z;
-  const poly<double> c1 = y1 / y1z;
-  const poly<double> lean = c1 - c0 * cosine;
-  const poly<double> upright_squared = lean * lean + (c0 * c0 - 1.0) * sine * sine;
-  constexpr double kTiny = 1e-30;
-  const poly<double> x_on =
-      cn::flip_sign(z * sine, lean) / cn::sqrt(cn::max(upright_squared, poly<double>(kTiny)));
-  const poly<double> x = cn::min(cn::max(x_on, x0), x1);
-
-  // Within the column the sine of the elevation is uniform.
-  const poly<double> column_squared = x * x + zz;
-  const poly<double> h0 = y0 / cn::sqrt(column_squared + y0 * y0);
-  const poly<double> h1 = y1 / cn::sqrt(column_squared + y1 * y1);
-  const poly<double> h = lerp(h0, h1, warped.v);
-  const poly<double> y_on = h * cn::sqrt(column_squared / cn::max(1.0 - h * h, poly<double>(kTiny)));
-  const poly<double> y = cn::min(cn::max(y_on, y0), y1);
-
-  const Direction3 to_light =
-      to_vertex + light.edge1 * ((x - x0) / length1) + light.edge2 * ((y - y0) / length2);
-  const poly<double> cosine_here = dot(to_light, normal) / cn::sqrt(dot(to_light, to_light));
-  LightSample sample{to_light, cosine_here * solid_angle / (warped.pdf * length1 * length2)};
-  cn::poly_if_any(!((z > 0.0) & (solid_angle > kLeastSolidAngle)), [&] {
-    const LightSample by_area =
-        weigh_by_area(to_vertex + light.edge1 * u + light.edge2 * v, light.normal, normal);
-    sample.to_light = by_area.to_light;
-    sample.weight = by_area.weight;
-  });
-  return sample;
+  const poly<double> x = rectangle_column(view, warped.u);
+  const poly<double> y = rectangle_row(view, x, warped.v);
+  return {
+      to_vertex + light.edge1 * ((x - view.x0) / view.length1) + light.edge2 * ((y - view.y0) / view.length2),
+      view.solid_angle, warped.pdf};
 }
 
+/// Unit vectors to a triangle's corners, turning left as seen from its front.
+struct TriangleView {
+  Direction3 a, b, c;
+  poly<double> volume;  ///< a . (b x c), positive in front of it
+  poly<double> solid_angle;
+};
+
+inline Direction3 unit(const Direction3& v) {
+  return v * (1.0 / cn::sqrt(at_least_tiny(dot(v, v))));
+}
+
+/// Solid angle after Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983.
+inline TriangleView view_triangle(const LightSurface& light, const Direction3& to_vertex) {
+  const Direction3 a = unit(to_vertex);
+  const Direction3 b = unit(to_vertex + light.edge2);
+  const Direction3 c = unit(to_vertex + light.edge1);
+  const poly<double> volume = dot(a, cross(b, c));
+  return {a, b, c, volume, 2.0 * cn::atan2(volume, 1.0 + dot(a, b) + dot(b, c) + dot(c, a))};
+}
+
+/// The point at the given cosine from `from` on the great circle towards `to`.
+inline Direction3 on_arc(const Direction3& from, const Direction3& to, const poly<double>& cosine) {
+  const Direction3 across = unit(to - from * dot(from, to));
+  return from * cosine + across * cn::sqrt(cn::max(1.0 - cosine * cosine, poly<double>(0.0)));
+}
+
+/// Uniform in solid angle (Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995) under a warp to
+/// the cosine: c moves along its side until the triangle has the share u of its solid angle, then v chooses
+/// between b and there. The angle at `a` enters by its sine and cosine only.
+inline SolidAngleSample sample_spherical_triangle(const TriangleView& view, const Direction3& light_normal,
+                                                  const poly<double>& z, const Direction3& normal,
+                                                  const poly<double>& u, const poly<double>& v) {
+  const poly<double> corner_a = corner_value(dot(view.a, normal));
+  const poly<double> corner_b = corner_value(dot(view.b, normal));
+  const poly<double> corner_c = corner_value(dot(view.c, normal));
+  const SquareSample warped = sample_bilinear({corner_b, corner_b, corner_a, corner_c}, u, v);
+
+  const Direction3 ab = cross(view.a, view.b);
+  const Direction3 ac = cross(view.a, view.c);
+  const poly<double> scale = 1.0 / cn::sqrt(at_least_tiny(dot(ab, ab) * dot(ac, ac)));
+  const poly<double> cosine_a = dot(ab, ac) * scale;
+  const poly<double> sine_a = view.volume * scale;
+  const cn::SineCosine part = cn::sincos(warped.u * view.solid_angle);
+  const poly<double> s = part.sine * cosine_a - part.cosine * sine_a;
+  const poly<double> t = part.cosine * cosine_a + part.sine * sine_a;
+  const poly<double> p = t - cosine_a;
+  const poly<double> q = s + sine_a * dot(view.a, view.b);
+  const poly<double> cosine_side = ((q * t - p * s) * cosine_a - q) / ((q * s + p * t) * sine_a);
+  const poly<double> within = cn::min(cn::max(cosine_side, poly<double>(-1.0)), poly<double>(1.0));
+  const Direction3 moved = on_arc(view.a, view.c, within);
+  const Direction3 direction = on_arc(view.b, moved, 1.0 - warped.v * (1.0 - dot(moved, view.b)));
+  const poly<double> distance = z / at_least_tiny(-dot(direction, light_normal));
+  return {direction * distance, view.solid_angle, warped.pdf};
+}
+
+/// Uniform in solid angle but for the warp to the cosine; uniform in area where the solid angle is too small.
 inline LightSample sample_light_solid_angle(const LightSurface& light, const poly<std::int32_t>& shape,
                                             const Point3& position, const Direction3& normal,
                                             const poly<double>& u, const poly<double>& v) {
-  (void)shape;
-  return sample_light_rectangle(light, position, normal, u, v);
+  const Direction3 to_vertex = light.vertex - position;
+  const poly<double> z = -dot(to_vertex, light.normal);
+  LightSample sample = sample_light_area(light, position, normal, u, v);
+  const auto take = [&](const LightSample& other) {
+    sample.to_light = other.to_light;
+    sample.weight = other.weight;
+  };
+  const mask is_rectangle = shape == static_cast<std::int32_t>(LightShape::rectangle);
+  cn::poly_if_any(is_rectangle, [&] {
+    take(weigh_by_area(to_vertex + light.edge1 * u + light.edge2 * v, light.normal, normal));
+    const RectangleView view = view_rectangle(light, to_vertex);
+    cn::poly_if((z > 0.0) & (view.solid_angle > kLeastSolidAngle), [&] {
+      take(weigh_by_solid_angle(sample_rectangle(light, view, to_vertex, normal, u, v), normal,
+                                view.length1 * view.length2));
+    });
+  });
+  cn::poly_if_any(!is_rectangle, [&] {
+    const TriangleView view = view_triangle(light, to_vertex);
+    cn::poly_if((z > 0.0) & (view.solid_angle > kLeastSolidAngle), [&] {
+      take(weigh_by_solid_angle(sample_spherical_triangle(view, light.normal, z, normal, u, v), normal,
+                                0.5 * dot(cross(light.edge1, light.edge2), light.normal)));
+    });
+  });
+  return sample;
 }
 
 }  // namespace path_tracer

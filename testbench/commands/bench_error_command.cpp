@@ -236,6 +236,7 @@ void add_bench_error_command(CLI::App& bench) {
   command.add_flag("--native", state->native_only, "Leave out the runs with timing on");
   command.add_option("--csv", state->csv, "Write the curve as CSV");
   command.add_option("--plot", state->plot, "Draw RMSE over seconds, .png or .svg (needs gnuplot)");
+  choose_best_sampling(state->options.program);
   add_sampling_options(command, state->options.program);
   state->chip.add_to(command, "csx600");
   state->level.add_to(command);

@@ -75,6 +75,11 @@ void add_bench_reference_command(CLI::App& bench) {
       "reference", "Render the image that errors are measured against: independent samples, many of them");
   const auto state = std::make_shared<BenchReferenceCommand>();
   state->options.work.samples = 16384;
+  // Independent samples, so that the variance layers are the error; light sampled otherwise than by default,
+  // so that a bias of either shows.
+  state->options.program.sampler = path_tracer::Sampler::philox;
+  state->options.program.light_sampling = path_tracer::LightSampling::area;
+  state->options.program.roulette_start = kRouletteStart;
   state->options.program.seed = kReferenceSeed;
   command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
   command.add_option("-o,--output", state->exr, "OpenEXR file to write")->required();

@@ -81,6 +81,12 @@ Scene load_scene_for_film(const std::string& path, const std::string& size) {
   return loaded;
 }
 
+void choose_best_sampling(path_tracer::ProgramConfig& program) {
+  program.sampler = path_tracer::Sampler::sobol;
+  program.light_sampling = path_tracer::LightSampling::solid_angle;
+  program.roulette_start = kRouletteStart;
+}
+
 void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program) {
   using path_tracer::LightSampling;
   using path_tracer::Sampler;

@@ -36,7 +36,14 @@ class LevelOption {
 /// Loads a scene; `size`, "480x480", takes the place of its film's unless it is empty. Throws InputError.
 Scene load_scene_for_film(const std::string& path, const std::string& size);
 
-/// How paths are sampled: --roulette-start, --seed. The defaults are the values in `program`.
+/// Segments without roulette that give the least error for the time (`csx600 bench error`, Cornell box).
+inline constexpr int kRouletteStart = 3;
+
+/// Sobol points, lights by solid angle, roulette from kRouletteStart on: the least error for the time.
+void choose_best_sampling(path_tracer::ProgramConfig& program);
+
+/// How paths are sampled: --sampler, --light-sampling, --roulette-start, --max-survival, --seed. The defaults
+/// are the values in `program`.
 void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program);
 
 }  // namespace testbench

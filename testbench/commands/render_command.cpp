@@ -158,6 +158,7 @@ void add_render_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("render", "Render a scene with the firmware on the chip");
   const auto state = std::make_shared<RenderCommand>();
   state->options.work.samples = 16;
+  choose_best_sampling(state->options.program);
   command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
   command.add_option("--samples", state->options.work.samples, "Paths a pixel")
       ->check(CLI::Range(1, 1 << 30))

@@ -72,6 +72,7 @@ Preset g80_like() {
        {"poly.cycles.fp64_sincos", "2420", kAssumed, kRoutine},
        {"poly.cycles.fp64_exp", "1980", kAssumed, kRoutine},
        {"poly.cycles.fp64_log", "1980", kAssumed, kRoutine},
+       {"poly.cycles.fp64_atan2", "2420", kAssumed, kRoutine},
        {"poly.cycles.fp64_add_vector4", "80", kAssumed, "4 x 20 single-precision operations, 1 a cycle"},
        {"poly.cycles.fp64_mul_vector4", "96", kAssumed, "4 x 24 single-precision operations, 1 a cycle"},
        {"poly.cycles.fp64_multiply_add_vector4", "176", kAssumed, "a multiply, then an add"},

@@ -131,6 +131,8 @@ void declare_floating_point_cycles(Parameters& table) {
       cycles<InstructionClass::fp64_sincos>(110, assumed, "double sine and cosine of one angle" + routine));
   table.push_back(cycles<InstructionClass::fp64_exp>(90, assumed, "double exponential" + routine));
   table.push_back(cycles<InstructionClass::fp64_log>(90, assumed, "double logarithm" + routine));
+  table.push_back(cycles<InstructionClass::fp64_atan2>(
+      110, assumed, "double angle of a point, taken as sine and cosine" + routine));
   table.push_back(cycles<InstructionClass::fp32_add>(
       4, assumed,
       "float add, subtract, compare; the rate equals double's [S1], so does the assumed latency"));

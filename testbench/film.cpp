@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <type_traits>
 
 #include "model/huge_pages.hpp"
 #include "testbench/error.hpp"
@@ -114,6 +115,25 @@ void Film::merge(const Film& other) {
   rejected_.not_finite += other.rejected_.not_finite;
   rejected_.negative += other.rejected_.negative;
   rejected_.too_large += other.rejected_.too_large;
+}
+
+std::string Film::bytes() const {
+  static_assert(std::is_trivially_copyable_v<Pixel> && std::is_trivially_copyable_v<RejectedSamples>);
+  const std::size_t pixel_bytes = pixels_.size() * sizeof(Pixel);
+  std::string result(pixel_bytes + sizeof(rejected_), '\0');
+  std::memcpy(result.data(), pixels_.data(), pixel_bytes);
+  std::memcpy(result.data() + pixel_bytes, &rejected_, sizeof(rejected_));
+  return result;
+}
+
+Film Film::from_bytes(FilmSize size, double scale, const std::string& bytes) {
+  Film film(size, scale);
+  const std::size_t pixel_bytes = film.pixels_.size() * sizeof(Pixel);
+  if (bytes.size() != pixel_bytes + sizeof(film.rejected_))
+    throw std::invalid_argument("these bytes are not a film of that size");
+  std::memcpy(film.pixels_.data(), bytes.data(), pixel_bytes);
+  std::memcpy(&film.rejected_, bytes.data() + pixel_bytes, sizeof(film.rejected_));
+  return film;
 }
 
 glm::dvec3 Film::mean(int pixel_index) const {

@@ -50,6 +50,11 @@ class Film {
   /// std::overflow_error, with this film unchanged, if a pixel would hold more than kMaxSamples.
   void merge(const Film& other);
 
+  /// All samples, for from_bytes() of the same build: how a film gets from one process to another.
+  std::string bytes() const;
+  /// Throws std::invalid_argument when `bytes` are not those of a film of this size.
+  static Film from_bytes(FilmSize size, double scale, const std::string& bytes);
+
   FilmSize size() const { return size_; }
   int pixel_count() const { return size_.width * size_.height; }
   double scale() const { return scale_; }

@@ -129,28 +129,35 @@ void write_png(const std::filesystem::path& path, const Film& film) {
   write_bytes_atomically(path, std::string_view(file).substr(0, bytes));
 }
 
-ExrImage read_exr_rgb(const std::filesystem::path& path) {
+namespace {
+
+/// Three float channels of an open file, interleaved.
+std::vector<float> read_channels(Imf::InputFile& file, const char* const (&names)[3],
+                                 const std::filesystem::path& path) {
+  const Imath::Box2i window = file.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  const auto height = static_cast<std::size_t>(window.max.y - window.min.y + 1);
+  std::vector<float> values(3 * width * height);
+  Imf::FrameBuffer buffer;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    if (file.header().channels().findChannel(names[channel]) == nullptr)
+      throw InputError(path.string() + ": found no channel " + names[channel] +
+                       "; allowed: an OpenEXR file with channels " + names[0] + ", " + names[1] + " and " +
+                       names[2]);
+    buffer.insert(names[channel], Imf::Slice::Make(Imf::FLOAT, &values[channel], window, 3 * sizeof(float),
+                                                   3 * sizeof(float) * width));
+  }
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.min.y, window.max.y);
+  return values;
+}
+
+/// Calls `read` with the open file and names the file in whatever goes wrong.
+template <class Read>
+auto read_exr(const std::filesystem::path& path, Read&& read) {
   try {
     Imf::InputFile file(path.c_str());
-    const Imath::Box2i window = file.header().dataWindow();
-    ExrImage image;
-    image.width = window.max.x - window.min.x + 1;
-    image.height = window.max.y - window.min.y + 1;
-    image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-    Imf::FrameBuffer buffer;
-    for (int channel = 0; channel < 3; ++channel) {
-      if (file.header().channels().findChannel(kMeanChannels[channel]) == nullptr) {
-        throw InputError(path.string() + ": found no channel " + kMeanChannels[channel] +
-                         "; allowed: an OpenEXR file with channels R, G and B");
-      }
-      buffer.insert(
-          kMeanChannels[channel],
-          Imf::Slice::Make(Imf::FLOAT, &image.rgb[static_cast<std::size_t>(channel)], window,
-                           3 * sizeof(float), 3 * sizeof(float) * static_cast<std::size_t>(image.width)));
-    }
-    file.setFrameBuffer(buffer);
-    file.readPixels(window.min.y, window.max.y);
-    return image;
+    return read(file);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
@@ -158,6 +165,37 @@ ExrImage read_exr_rgb(const std::filesystem::path& path) {
     throw InputError(path.string() + ": cannot be read (" + what.substr(0, what.find('\n')) +
                      "); allowed: an OpenEXR file with channels R, G and B");
   }
+}
+
+template <class Image>
+void read_size(const Imf::InputFile& file, Image& image) {
+  const Imath::Box2i window = file.header().dataWindow();
+  image.width = window.max.x - window.min.x + 1;
+  image.height = window.max.y - window.min.y + 1;
+}
+
+}  // namespace
+
+ExrImage read_exr_rgb(const std::filesystem::path& path) {
+  return read_exr(path, [&](Imf::InputFile& file) {
+    ExrImage image;
+    read_size(file, image);
+    image.rgb = read_channels(file, kMeanChannels, path);
+    return image;
+  });
+}
+
+ExrFilm read_exr_film(const std::filesystem::path& path) {
+  return read_exr(path, [&](Imf::InputFile& file) {
+    ExrFilm film;
+    read_size(file, film);
+    film.rgb = read_channels(file, kMeanChannels, path);
+    film.variance = read_channels(file, kVarianceChannels, path);
+    for (auto entry = file.header().begin(); entry != file.header().end(); ++entry)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute()))
+        film.attributes[entry.name()] = text->value();
+    return film;
+  });
 }
 
 }  // namespace testbench

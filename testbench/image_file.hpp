@@ -33,4 +33,16 @@ struct ExrImage {
 /// Reads channels R, G, B of an OpenEXR file. Throws InputError if it cannot be read or a channel is missing.
 ExrImage read_exr_rgb(const std::filesystem::path& path);
 
+/// What write_exr() wrote.
+struct ExrFilm {
+  int width = 0;
+  int height = 0;
+  std::vector<float> rgb;       ///< mean radiance
+  std::vector<float> variance;  ///< of the mean, in the order of `rgb`
+  std::map<std::string, std::string> attributes;
+};
+
+/// Reads back mean, variance and string attributes. Throws InputError as read_exr_rgb() does.
+ExrFilm read_exr_film(const std::filesystem::path& path);
+
 }  // namespace testbench

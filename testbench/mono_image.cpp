@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "testbench/error.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 
 using path_tracer::CameraRecord;
 using path_tracer::LightRecord;
+using path_tracer::LightShape;
 using path_tracer::SurfaceRecord;
 using path_tracer::TriangleRecord;
 
@@ -52,41 +54,110 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
   return record;
 }
 
-/// What a light sends out in all, up to a common factor; lights are chosen in proportion to it.
-double light_power(const Triangle& triangle, const Material& material) {
-  return glm::length(area_normal(triangle)) *
-         (material.emission.x + material.emission.y + material.emission.z);
-}
-
 struct Lights {
   std::vector<LightRecord> records;
   std::vector<double> cdf;
 };
 
-Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces) {
+/// Part of the scene that is sampled as one light.
+struct Emitter {
+  glm::dvec3 vertex;
+  glm::dvec3 edge1;
+  glm::dvec3 edge2;
+  LightShape shape;
+  std::int32_t material;
+  std::int32_t face;
+};
+
+double area(const Emitter& emitter) {
+  const double parallelogram = glm::length(glm::cross(emitter.edge1, emitter.edge2));
+  return emitter.shape == LightShape::triangle ? 0.5 * parallelogram : parallelogram;
+}
+
+/// What a light sends out in all, up to a common factor; lights are chosen in proportion to it.
+double power(const Emitter& emitter, const Scene& scene) {
+  const glm::dvec3& emission = scene.materials[std::size_t(emitter.material)].emission;
+  return area(emitter) * (emission.x + emission.y + emission.z);
+}
+
+/// The rectangle that two triangles of one face and material make, if they do: within rounding of a right
+/// angle, 2^-40.
+std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
+  constexpr double kTolerance = 0x1p-40;
+  if (a.face != b.face || a.material != b.material) return {};
+  const glm::dvec3 corners_a[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
+  const glm::dvec3 corners_b[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
+  for (int i = 0; i < 3; ++i) {
+    // The right angle at a corner of one, its opposite at a corner of the other.
+    Emitter joined = a;
+    joined.vertex = corners_a[i];
+    joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
+    joined.edge2 = corners_a[(i + 2) % 3] - joined.vertex;
+    joined.shape = LightShape::rectangle;
+    const double size = glm::length(joined.edge1) * glm::length(joined.edge2);
+    if (std::abs(glm::dot(joined.edge1, joined.edge2)) > kTolerance * size) continue;
+    const auto is_corner_of_b = [&](const glm::dvec3& point) {
+      return std::any_of(std::begin(corners_b), std::end(corners_b), [&](const glm::dvec3& corner) {
+        return glm::length(corner - point) <= kTolerance * std::sqrt(size);
+      });
+    };
+    if (is_corner_of_b(joined.vertex + joined.edge1) && is_corner_of_b(joined.vertex + joined.edge2) &&
+        is_corner_of_b(joined.vertex + joined.edge1 + joined.edge2))
+      return joined;
+  }
+  return {};
+}
+
+std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::int32_t>& faces) {
+  std::vector<Emitter> emitters;
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const Triangle& triangle = scene.triangles[i];
+    const Emitter emitter{triangle.vertex[0],
+                          triangle.vertex[1] - triangle.vertex[0],
+                          triangle.vertex[2] - triangle.vertex[0],
+                          LightShape::triangle,
+                          triangle.material,
+                          faces[i]};
+    if (power(emitter, scene) > 0) emitters.push_back(emitter);
+  }
+  return emitters;
+}
+
+/// Puts rectangles in the place of their halves, where the scene lists one after the other.
+std::vector<Emitter> join_rectangles(const std::vector<Emitter>& triangles) {
+  std::vector<Emitter> emitters;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::optional<Emitter> joined;
+    if (i + 1 < triangles.size()) joined = join(triangles[i], triangles[i + 1]);
+    emitters.push_back(joined.value_or(triangles[i]));
+    if (joined) ++i;
+  }
+  return emitters;
+}
+
+Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
+                   path_tracer::LightSampling sampling) {
+  std::vector<Emitter> emitters = find_emitters(scene, faces);
+  if (sampling == path_tracer::LightSampling::solid_angle) emitters = join_rectangles(emitters);
   double total_power = 0;
-  for (const Triangle& triangle : scene.triangles)
-    total_power += light_power(triangle, scene.materials[std::size_t(triangle.material)]);
+  for (const Emitter& emitter : emitters) total_power += power(emitter, scene);
   if (!(total_power > 0))
     throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
 
   Lights lights;
   double power_so_far = 0;
-  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-    const Triangle& triangle = scene.triangles[i];
-    const Material& material = scene.materials[std::size_t(triangle.material)];
-    const double power = light_power(triangle, material);
-    if (!(power > 0)) continue;
-    const glm::dvec3 twice_area = area_normal(triangle);
-    const double pdf = power / total_power / (0.5 * glm::length(twice_area));
+  for (const Emitter& emitter : emitters) {
+    const double pdf = power(emitter, scene) / total_power / area(emitter);
     LightRecord record;
-    record.vertex = to_record(triangle.vertex[0]);
-    record.edge1 = to_record(triangle.vertex[1] - triangle.vertex[0]);
-    record.edge2 = to_record(triangle.vertex[2] - triangle.vertex[0]);
-    record.normal_over_pdf = to_record(glm::normalize(twice_area) / pdf);
-    record.face = faces[i];
+    record.vertex = to_record(emitter.vertex);
+    record.edge1 = to_record(emitter.edge1);
+    record.edge2 = to_record(emitter.edge2);
+    record.normal = to_record(glm::normalize(glm::cross(emitter.edge1, emitter.edge2)));
+    record.inverse_pdf = 1.0 / pdf;
+    record.face = emitter.face;
+    record.shape = static_cast<std::int32_t>(emitter.shape);
     lights.records.push_back(record);
-    power_so_far += power;
+    power_so_far += power(emitter, scene);
     lights.cdf.push_back(power_so_far / total_power);
   }
   return lights;
@@ -155,7 +226,7 @@ std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles) {
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config) {
   const std::vector<std::int32_t> faces = number_faces(scene.triangles);
-  const Lights lights = make_lights(scene, faces);
+  const Lights lights = make_lights(scene, faces, config.light_sampling);
   std::vector<TriangleRecord> triangles;
   std::vector<SurfaceRecord> surfaces;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {

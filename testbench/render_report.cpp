@@ -7,6 +7,7 @@
 #include "model/chip_file.hpp"
 #include "testbench/host_time.hpp"
 #include "testbench/paper.hpp"
+#include "testbench/program_names.hpp"
 
 namespace testbench {
 namespace {
@@ -25,7 +26,10 @@ Json program_json(const RenderOptions& options) {
           {"buffer", buffering_name(program)},
           {"bin_blocks", program.bin_blocks},
           {"slot_vertices", program.slot_vertices},
+          {"sampler", sampler_name(program.sampler)},
+          {"light_sampling", light_sampling_name(program.light_sampling)},
           {"roulette_start", program.roulette_start},
+          {"max_survival", program.max_survival},
           {"seed", program.seed},
           {"samples", options.work.samples}};
 }

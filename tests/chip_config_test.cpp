@@ -173,6 +173,7 @@ TEST(ParameterTable, DefaultsAreTheReferences) {
   EXPECT_EQ(cycles(InstructionClass::fp64_sincos), 110);
   EXPECT_EQ(cycles(InstructionClass::fp64_exp), 90);
   EXPECT_EQ(cycles(InstructionClass::fp64_log), 90);
+  EXPECT_EQ(cycles(InstructionClass::fp64_atan2), 110);
   EXPECT_EQ(cycles(InstructionClass::fp32_div), 24);
   EXPECT_EQ(cycles(InstructionClass::fp32_sqrt), 28);
   // Four elements, one a cycle; multiplier and adder at once: 96 x 2 x f is the peak.

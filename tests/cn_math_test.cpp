@@ -153,6 +153,49 @@ TEST_F(CnMath, EveryLevelGivesTheSameBits) {
   EXPECT_EQ(hash, 0xe4bda3e362053dfau);
 }
 
+class CnArcTangent : public CnMath {
+ protected:
+  /// Results for points (x, y), one a PE.
+  PerPe<double> angles(const PerPe<double>& y, const PerPe<double>& x) {
+    PerPe<double> found = per_pe<double>();
+    run([&] { store(found, cn::atan2(load(y), load(x))); });
+    return found;
+  }
+};
+
+TEST_F(CnArcTangent, IsWithinOneUlpAndTheSameAtEveryLevel) {
+  std::mt19937_64 random(4);
+  double largest = 0;
+  for (int round = 0; round < 64; ++round) {
+    PerPe<double> y = per_pe<double>();
+    PerPe<double> x = per_pe<double>();
+    const auto number = [&] {
+      const double mantissa = static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
+      return std::ldexp(mantissa, static_cast<int>(random() % 41) - 20);
+    };
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = number(), x[i] = number();
+    const PerPe<double> found = angles(y, x);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      largest = std::max(largest, ulps(found[i], atan2l(y[i], x[i])));
+      std::uint64_t bits;
+      std::memcpy(&bits, &found[i], sizeof(bits));
+      hash = (hash ^ bits) * 0x100000001b3u;
+    }
+  }
+  EXPECT_LE(largest, 1.0);
+  EXPECT_EQ(hash, 8733621676086656265u);
+}
+
+TEST_F(CnArcTangent, QuadrantsAndZeros) {
+  PerPe<double> y = per_pe(0.0);
+  PerPe<double> x = per_pe(0.0);
+  const double points[][2] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {0, 0}, {-0.0, -1}, {kNan, 1}, {1, kNan}};
+  for (std::size_t i = 0; i < std::size(points); ++i) y[i] = points[i][0], x[i] = points[i][1];
+  const PerPe<double> found = angles(y, x);
+  for (std::size_t i = 0; i < std::size(points); ++i)
+    EXPECT_TRUE(same(found[i], std::atan2(y[i], x[i]))) << y[i] << ", " << x[i];
+}
+
 TEST_F(CnMath, SignsAreBits) {
   PerPe<double> a = per_pe<double>();
   PerPe<double> b = per_pe<double>();
@@ -205,6 +248,7 @@ TEST_F(CnMath, FunctionsIssueTheirOwnClass) {
   EXPECT_EQ(issued_by([&] { cn::sincos(a); }), counts({{InstructionClass::fp64_sincos, 1}}));
   EXPECT_EQ(issued_by([&] { cn::exp(a); }), counts({{InstructionClass::fp64_exp, 1}}));
   EXPECT_EQ(issued_by([&] { cn::log(a); }), counts({{InstructionClass::fp64_log, 1}}));
+  EXPECT_EQ(issued_by([&] { cn::atan2(a, a); }), counts({{InstructionClass::fp64_atan2, 1}}));
   EXPECT_EQ(issued_by([&] { cn::abs(a); }), counts({{InstructionClass::int16_alu, 1}}));
   EXPECT_EQ(issued_by([&] { cn::flip_sign(a, a); }), counts({{InstructionClass::int16_alu, 2}}));
   const auto compare_and_move = counts({{InstructionClass::fp64_add, 1}, {InstructionClass::move, 1}});

@@ -201,6 +201,20 @@ TEST(Film, refuses_wrong_use) {
   EXPECT_THROW(film.merge(Film({2, 2}, 2.0)), std::invalid_argument);
 }
 
+TEST(Film, survives_the_way_to_another_process) {
+  Film film({3, 2}, 16.0);
+  for (const Sample& s : wild_samples(6, 300)) film.add(s.pixel, s.radiance);
+  film.add(0, {-1.0, 0.0, 0.0});
+  const Film copy = Film::from_bytes({3, 2}, 16.0, film.bytes());
+  expect_same_bits(film, copy);
+  EXPECT_EQ(copy.rejected().negative, 1u);
+  Film twice = film;
+  twice.merge(copy);
+  EXPECT_EQ(twice.sample_count(0), 2 * film.sample_count(0));
+  EXPECT_THROW(Film::from_bytes({2, 2}, 16.0, film.bytes()), std::invalid_argument);
+  EXPECT_THROW(Film::from_bytes({3, 2}, 16.0, ""), std::invalid_argument);
+}
+
 TEST(FilmScale, is_the_power_of_two_at_or_above_the_largest_emission) {
   const auto scale_of = [](double emission) {
     testbench::Scene scene;

@@ -161,6 +161,25 @@ TEST(SrgbCode, follows_the_curve_of_iec_61966_2_1) {
     EXPECT_LE(testbench::srgb_code(i / 1e4), testbench::srgb_code((i + 1) / 1e4));
 }
 
+TEST_F(ImageFileTest, exr_film_reads_back_mean_variance_and_attributes) {
+  const fs::path path = directory_ / "a.exr";
+  const Film film = small_film();
+  write_exr(path, film, {{"csx600.seed", "7"}});
+  const testbench::ExrFilm found = testbench::read_exr_film(path);
+  EXPECT_EQ(found.width, 3);
+  EXPECT_EQ(found.height, 2);
+  EXPECT_EQ(found.attributes.at("csx600.seed"), "7");
+  ASSERT_EQ(found.variance.size(), 18u);
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const std::size_t i = 3 * std::size_t(pixel) + std::size_t(channel);
+      EXPECT_EQ(found.rgb[i], float(film.mean(pixel)[channel]));
+      EXPECT_EQ(found.variance[i], float(film.variance_of_mean(pixel)[channel]));
+    }
+  }
+  EXPECT_THROW(testbench::read_exr_film(directory_ / "none.exr"), InputError);
+}
+
 TEST_F(ImageFileTest, reading_refuses_what_is_no_rgb_exr) {
   EXPECT_THROW(testbench::read_exr_rgb(directory_ / "none.exr"), InputError);
   std::ofstream(directory_ / "text.exr") << "no image";

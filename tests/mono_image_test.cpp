@@ -89,6 +89,60 @@ TEST(MonoImage, LightsAreChosenByTheirPower) {
     EXPECT_NEAR(vector(bright.emission_over_pdf)[channel], (3.0 + channel) / (2.0 / 3.0 / 1.0), 1e-12);
 }
 
+/// A square light of two triangles, a lone triangle, and a parallelogram that is no rectangle.
+Scene lights_of_all_shapes() {
+  Scene scene = three_triangles();
+  const auto quadrilateral = [&](glm::dvec3 corner, glm::dvec3 edge1, glm::dvec3 edge2) {
+    scene.triangles.push_back({{corner, corner + edge1, corner + edge1 + edge2}, 1});
+    scene.triangles.push_back({{corner, corner + edge1 + edge2, corner + edge2}, 1});
+  };
+  scene.triangles.clear();
+  quadrilateral({0, 0, 0}, {2, 0, 0}, {0, 3, 0});
+  scene.triangles.push_back({{{9, 0, 0}, {10, 0, 0}, {9, 1, 0}}, 1});
+  quadrilateral({20, 0, 0}, {2, 0, 0}, {1, 1, 0});
+  return scene;
+}
+
+TEST(MonoImage, HalvesOfARectangleAreOneLightWhenSampledBySolidAngle) {
+  path_tracer::ProgramConfig config;
+  EXPECT_EQ(make_mono_image(lights_of_all_shapes(), 96, config).layout.light_count, 5);
+  config.light_sampling = path_tracer::LightSampling::solid_angle;
+  const MonoImage image = make_mono_image(lights_of_all_shapes(), 96, config);
+  ASSERT_EQ(image.layout.light_count, 4);
+  const auto rectangle = record(image, image.layout.lights, 0);
+  EXPECT_EQ(rectangle.shape, std::int32_t(path_tracer::LightShape::rectangle));
+  EXPECT_EQ(rectangle.face, 0);
+  EXPECT_EQ(vector(rectangle.normal), glm::dvec3(0, 0, 1));
+  const glm::dvec3 edge1 = vector(rectangle.edge1);
+  const glm::dvec3 edge2 = vector(rectangle.edge2);
+  EXPECT_EQ(glm::dot(edge1, edge2), 0.0);
+  EXPECT_EQ(glm::cross(edge1, edge2), glm::dvec3(0, 0, 6));
+  const glm::dvec3 middle = vector(rectangle.vertex) + 0.5 * (edge1 + edge2);
+  EXPECT_EQ(middle, glm::dvec3(1, 1.5, 0));
+  // Areas 6, 1/2, 1 and 1 of one radiance: the density of a point is the same on all, 1 / 8.5.
+  EXPECT_DOUBLE_EQ(record(image, image.layout.light_cdf, 0), 6 / 8.5);
+  for (int light = 0; light < 4; ++light) {
+    const auto found = record(image, image.layout.lights, light);
+    EXPECT_NEAR(found.emission_over_pdf.x, 8.5, 1e-12);
+    if (light > 0) {
+      EXPECT_EQ(found.shape, std::int32_t(path_tracer::LightShape::triangle));
+    }
+  }
+}
+
+TEST(MonoImage, TrianglesThatAreNoHalvesStayApart) {
+  path_tracer::ProgramConfig config;
+  config.light_sampling = path_tracer::LightSampling::solid_angle;
+  Scene bent = lights_of_all_shapes();
+  bent.triangles.resize(2);
+  bent.triangles[1].vertex[2].z = 0.5;
+  EXPECT_EQ(make_mono_image(bent, 96, config).layout.light_count, 2);
+  Scene two_colours = lights_of_all_shapes();
+  two_colours.triangles.resize(2);
+  two_colours.triangles[1].material = 2;
+  EXPECT_EQ(make_mono_image(two_colours, 96, config).layout.light_count, 2);
+}
+
 TEST(MonoImage, CdfOfManyLightsAscendsToOne) {
   const MonoImage image = make_mono_image(test_support::triangle_soup(800, 5, {8, 8}), 96, {});
   ASSERT_EQ(image.layout.light_count, 100);

@@ -1,5 +1,7 @@
 #include "firmware/path_tracer/sampling.hpp"
 
+#include "firmware/path_tracer/random.hpp"
+
 #include <random>
 
 #include "tests/support/chi_square.hpp"
@@ -179,6 +181,31 @@ TEST_F(Sampling, CdfEntriesEndWhereTheTableSays) {
   for (const std::int32_t entry : chosen) EXPECT_EQ(entry, 0);
 }
 
+TEST_F(Sampling, WhatACdfEntryLeavesIsUniformAgain) {
+  const double cdf[] = {0.1, 0.45, 0.5, 1.0 - 1e-12};
+  const double low[] = {0.0, 0.1, 0.45, 0.5};
+  PerPe<std::int32_t> entry = per_pe<std::int32_t>();
+  PerPe<double> rest = per_pe<double>();
+  for (int round = 0; round < 4; ++round) {
+    PerPe<double> u = uniform();
+    u[0] = kLargest;
+    run([&] {
+      const auto chosen = path_tracer::sample_cdf_stretched(cdf, 4, load(u));
+      store(entry, chosen.entry);
+      store(rest, chosen.rest);
+    });
+    for (std::size_t pe = 0; pe < u.size(); ++pe) {
+      const auto i = static_cast<std::size_t>(entry[pe]);
+      ASSERT_GE(rest[pe], 0.0);
+      ASSERT_LT(rest[pe], 1.0);
+      EXPECT_NEAR(low[i] + rest[pe] * (cdf[i] - low[i]), u[pe], 1e-11);
+    }
+  }
+  const PerPe<double> u = uniform();
+  run([&] { store(rest, path_tracer::sample_cdf_stretched(cdf, 1, load(u)).rest); });
+  EXPECT_EQ(rest, u);
+}
+
 class CameraSampling : public Sampling {
  protected:
   /// A camera whose film coordinates can be read off its directions: (x, y, 1) to unit length.
@@ -205,15 +232,15 @@ class CameraSampling : public Sampling {
     Samples s{{per_pe<double>(), per_pe<double>(), per_pe<double>()}, {}, per_pe<double>(), per_pe<double>()};
     s.origin = s.direction;
     run(cn::LaneMask::first(pes), [&] {
-      const auto ray = path_tracer::sample_camera(camera, 77, load(pixel), sample_number);
+      const auto drawn =
+          path_tracer::uniform4(77, load(pixel), sample_number, 0, path_tracer::Purpose::camera);
+      const auto ray = path_tracer::sample_camera(camera, load(pixel), drawn.value[0], drawn.value[1]);
       store(s.direction.x, ray.direction.x);
       store(s.direction.y, ray.direction.y);
       store(s.direction.z, ray.direction.z);
       store(s.origin.x, ray.origin.x);
       store(s.origin.y, ray.origin.y);
       store(s.origin.z, ray.origin.z);
-      const auto drawn =
-          path_tracer::uniform4(77, load(pixel), sample_number, 0, path_tracer::Purpose::camera);
       store(s.random_x, drawn.value[0]);
       store(s.random_y, drawn.value[1]);
     });

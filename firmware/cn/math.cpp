@@ -13,6 +13,9 @@ using Chunk = Lanes<double>::Chunk;
 auto sincos_chunk(Chunk a) {
   return Sleef_cinz_sincosd8_u10avx512fnofma(a);
 }
+Chunk atan2_chunk(Chunk y, Chunk x) {
+  return Sleef_cinz_atan2d8_u10avx512fnofma(y, x);
+}
 Chunk exp_chunk(Chunk a) {
   return Sleef_cinz_expd8_u10avx512fnofma(a);
 }
@@ -23,6 +26,9 @@ Chunk log_chunk(Chunk a) {
 auto sincos_chunk(Chunk a) {
   return Sleef_cinz_sincosd4_u10avx(a);
 }
+Chunk atan2_chunk(Chunk y, Chunk x) {
+  return Sleef_cinz_atan2d4_u10avx(y, x);
+}
 Chunk exp_chunk(Chunk a) {
   return Sleef_cinz_expd4_u10avx(a);
 }
@@ -32,6 +38,9 @@ Chunk log_chunk(Chunk a) {
 #else
 auto sincos_chunk(Chunk a) {
   return Sleef_cinz_sincosd2_u10sse2(a);
+}
+Chunk atan2_chunk(Chunk y, Chunk x) {
+  return Sleef_cinz_atan2d2_u10sse2(y, x);
 }
 Chunk exp_chunk(Chunk a) {
   return Sleef_cinz_expd2_u10sse2(a);
@@ -53,6 +62,12 @@ SineCosine sincos(const poly<double>& radians) {
     cosine.chunk[i] = both.y;
   }
   return {poly<double>(sine), poly<double>(cosine)};
+}
+
+poly<double> atan2(const poly<double>& y, const poly<double>& x) {
+  issue(InstructionClass::fp64_atan2);
+  return poly<double>(
+      each_chunk<double>([&](int i) { return atan2_chunk(y.lanes().chunk[i], x.lanes().chunk[i]); }));
 }
 
 poly<double> exp(const poly<double>& a) {

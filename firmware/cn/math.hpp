@@ -51,6 +51,9 @@ struct SineCosine {
 /// x86-64 level, error below 1 ulp.
 SineCosine sincos(const poly<double>& radians);
 
+/// Angle of the point (x, y) from the positive x axis, in (-pi, pi].
+poly<double> atan2(const poly<double>& y, const poly<double>& x);
+
 poly<double> exp(const poly<double>& a);
 poly<double> log(const poly<double>& a);
 

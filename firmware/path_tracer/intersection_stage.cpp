@@ -67,6 +67,8 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   arguments.surface = from.surface;
   arguments.path = from.path;
   arguments.light = from.light;
+  arguments.sampler = context_.config.sampler;
+  arguments.light_sampling = context_.config.light_sampling;
   arguments.seed = context_.config.seed;
   arguments.roulette_start = context_.config.roulette_start;
   arguments.max_survival = context_.config.max_survival;

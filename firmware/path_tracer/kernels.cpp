@@ -2,7 +2,8 @@
 
 #include "firmware/path_tracer/kernels.hpp"
 
-#include "firmware/path_tracer/sampling.hpp"
+#include "firmware/path_tracer/light_sampling.hpp"
+#include "firmware/path_tracer/sampler.hpp"
 #include "firmware/path_tracer/triangle.hpp"
 
 namespace path_tracer {
@@ -46,19 +47,19 @@ struct Surface {
 /// A shadow ray from `surface`, and what its answer will be worth; `wants_light` says where there can be one.
 void aim(const ScatterArguments& arguments, const Surface& surface, const mask& wants_light) {
   const PolyPointer<LightRecord>& light = arguments.light;
-  const Point3 on_light = sample_triangle(
-      light.get(&LightRecord::vertex), light.get(&LightRecord::edge1), light.get(&LightRecord::edge2),
-      arguments.path.get(&PathRecord::light_u), arguments.path.get(&PathRecord::light_v));
-  const Direction3 to_light = on_light - surface.position;
-  // Both cosines are scaled by the distance, that at the light by 1 / pdf, too.
-  const poly<double> cosine_here = dot(to_light, surface.normal);
-  const poly<double> cosine_there = -dot(to_light, light.get(&LightRecord::normal_over_pdf));
-  const mask facing = (cosine_here > 0.0) & (cosine_there > 0.0);
-  const poly<double> distance_squared = dot(to_light, to_light);
-  const poly<double> geometry = cosine_here * cosine_there / (distance_squared * distance_squared);
-  const poly<double> scale = cn::select(facing, geometry, poly<double>(0.0)) * (1.0 / kPi);
+  const LightSurface light_surface{light.get(&LightRecord::vertex), light.get(&LightRecord::edge1),
+                                   light.get(&LightRecord::edge2), light.get(&LightRecord::normal)};
+  const poly<double> u = arguments.path.get(&PathRecord::light_u);
+  const poly<double> v = arguments.path.get(&PathRecord::light_v);
+  const LightSample sample = arguments.light_sampling == LightSampling::area
+                                 ? sample_light_area(light_surface, surface.position, surface.normal, u, v)
+                                 : sample_light_solid_angle(light_surface, light.get(&LightRecord::shape),
+                                                            surface.position, surface.normal, u, v);
+  const mask facing = sample.weight > 0.0;
+  const poly<double> scale = cn::select(facing, sample.weight, poly<double>(0.0)) *
+                             light.get(&LightRecord::inverse_pdf) * (1.0 / kPi);
   arguments.shadow_ray.set(&RayRecord::origin, surface.position);
-  arguments.shadow_ray.set(&RayRecord::direction, to_light);
+  arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
   arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
   arguments.lighting.set(&LightingRecord::weight, surface.reflectance * scale);
   arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
@@ -74,22 +75,23 @@ void scatter(const ScatterArguments& arguments) {
                         cn::select(front, surface_normal, surface_normal * -1.0),
                         arguments.surface.get(&SurfaceRecord::reflectance)};
   const poly<double> albedo = largest(surface.reflectance);
-  const Uniform4 random = uniform4(arguments.seed, arguments.path.get(&PathRecord::pixel),
-                                   arguments.path.get(&PathRecord::sample), depth, Purpose::scatter);
+  const ScatterNumbers random =
+      scatter_numbers(arguments.sampler, arguments.seed, arguments.path.get(&PathRecord::pixel),
+                      arguments.path.get(&PathRecord::sample), depth);
 
   // Russian roulette on the surface alone: the path before it need not be loaded.
   const mask safe = depth < arguments.roulette_start;
   const poly<double> survival =
       cn::select(safe, poly<double>(1.0), cn::min(albedo, poly<double>(arguments.max_survival)));
   const mask reflects = hit & (albedo > 0.0);
-  const mask goes_on = reflects & (random.value[2] < survival);
+  const mask goes_on = reflects & (random.roulette < survival);
   const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
 
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
   const mask emits = hit & front & (arguments.casts_shadow_rays ? depth == 0 : depth >= 0);
   arguments.scatter.set(&ScatterRecord::position, surface.position);
   arguments.scatter.set(&ScatterRecord::direction,
-                        sample_cosine(surface.normal, random.value[0], random.value[1]));
+                        sample_cosine(surface.normal, random.direction.u, random.direction.v));
   arguments.scatter.set(&ScatterRecord::radiance,
                         cn::select(emits, arguments.surface.get(&SurfaceRecord::emission), none));
   arguments.scatter.set(&ScatterRecord::weight,
@@ -146,7 +148,8 @@ void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_
                    pixel -= pixels;
                    sample += 1;
                  });
-  const CameraRay ray = sample_camera(*arguments.camera, arguments.seed, pixel, sample);
+  const UniformPair in_pixel = camera_numbers(arguments.sampler, arguments.seed, pixel, sample);
+  const CameraRay ray = sample_camera(*arguments.camera, pixel, in_pixel.u, in_pixel.v);
   arguments.ray.set(&RayRecord::origin, ray.origin);
   arguments.ray.set(&RayRecord::direction, ray.direction);
   arguments.ray.set(&RayRecord::left_face, poly<std::int32_t>(kNoFace));
@@ -175,13 +178,12 @@ void continue_path(const ReplaceArguments& arguments) {
 /// vertex.
 void choose_light(const ReplaceArguments& arguments) {
   const PolyPointer<PathRecord>& path = arguments.next_path;
-  const Uniform4 random =
-      uniform4(arguments.seed, path.get(&PathRecord::pixel), path.get(&PathRecord::sample),
-               path.get(&PathRecord::depth), Purpose::light);
-  path.set(&PathRecord::light_u, random.value[0]);
-  path.set(&PathRecord::light_v, random.value[1]);
-  const poly<std::int32_t> light = sample_cdf(arguments.light_cdf, arguments.light_count, random.value[2]);
-  arguments.light_place.write(place_of(arguments.lights, light, sizeof(LightRecord)));
+  const LightNumbers numbers = light_numbers(arguments.sampler, arguments.seed, path.get(&PathRecord::pixel),
+                                             path.get(&PathRecord::sample), path.get(&PathRecord::depth),
+                                             arguments.light_cdf, arguments.light_count);
+  path.set(&PathRecord::light_u, numbers.position.u);
+  path.set(&PathRecord::light_v, numbers.position.v);
+  arguments.light_place.write(place_of(arguments.lights, numbers.light, sizeof(LightRecord)));
 }
 
 void replace(const ReplaceArguments& arguments) {

@@ -33,6 +33,8 @@ struct ScatterArguments {
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<PathRecord> path;
   PolyPointer<LightRecord> light;
+  Sampler sampler = Sampler::philox;
+  LightSampling light_sampling = LightSampling::area;
   std::uint64_t seed = 0;
   int roulette_start = 0;
   double max_survival = 0;
@@ -79,6 +81,7 @@ struct ReplaceArguments {
   const double* light_cdf = nullptr;  ///< nothing without shadow rays
   int light_count = 0;
   MonoAddress lights = 0;
+  Sampler sampler = Sampler::philox;
   std::uint64_t seed = 0;
   std::int32_t next_pixel = 0;  ///< of the camera ray with number 0
   std::int32_t next_sample = 0;

@@ -107,6 +107,7 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
     arguments.lights = context_.layout.lights.address;
     arguments.light_place = bin.light_place;
   }
+  arguments.sampler = context_.config.sampler;
   arguments.seed = context_.config.seed;
   arguments.next_pixel = camera_rays_.next_pixel();
   arguments.next_sample = camera_rays_.next_sample();

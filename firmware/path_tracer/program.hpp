@@ -16,6 +16,18 @@ enum class Program : std::uint8_t {
   full,      ///< plus the radiance of finished paths
 };
 
+/// Where random numbers come from.
+enum class Sampler : std::uint8_t {
+  philox,  ///< independent
+  sobol,   ///< Owen-scrambled Sobol points: the samples of a pixel are stratified
+};
+
+/// How a point on a light is chosen.
+enum class LightSampling : std::uint8_t {
+  area,         ///< uniform on its surface
+  solid_angle,  ///< uniform in the solid angle it takes, warped to the cosine at the lit surface
+};
+
 inline constexpr int kMaxBuffers = 8;
 
 /// Far beyond what fits the chip; so that slot numbers stay within 32 bits.
@@ -31,11 +43,13 @@ struct ProgramConfig {
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
-  int bin_blocks = 16;           ///< length of each bin in blocks of one SIMD width
+  int bin_blocks = 8;            ///< length of each bin in blocks of one SIMD width
   int slot_vertices = 16;        ///< vertices a path slot holds; a multiple of kVerticesPerLoad
   int roulette_start = 0;        ///< segments a path lives without roulette
   double max_survival = 0.95;    ///< so that paths between white surfaces end
   bool cull_shadow_rays = true;  ///< none where surface or light turns its back on the other
+  Sampler sampler = Sampler::philox;
+  LightSampling light_sampling = LightSampling::area;
   std::uint64_t seed = 1;
 
   bool buffers_loads() const { return buffer_loads && n > 0; }

@@ -41,14 +41,20 @@ struct SurfaceRecord {
   std::int32_t unused = 0;
 };
 
-/// A triangle that emits from its front.
+enum class LightShape : std::int32_t {
+  triangle,   ///< of edge1 and edge2
+  rectangle,  ///< the parallelogram of edge1 and edge2, which are orthogonal
+};
+
+/// A triangle or rectangle that emits from its front, where edge1 x edge2 points.
 struct LightRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};
   vec3<double> edge2{};
-  vec3<double> normal_over_pdf{};  ///< unit normal * area / probability of this light
+  vec3<double> normal{};
+  double inverse_pdf = 0;  ///< area / probability of this light
   std::int32_t face = kNoFace;
-  std::int32_t unused = 0;
+  std::int32_t shape = static_cast<std::int32_t>(LightShape::triangle);
 };
 
 /// Ray bin. With direct lighting a slot's ray is the next segment of its path or the shadow ray of the last

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "firmware/cn/control.hpp"
-#include "firmware/path_tracer/random.hpp"
 #include "firmware/path_tracer/records.hpp"
 
 namespace path_tracer {
@@ -51,21 +50,43 @@ inline poly<std::int32_t> sample_cdf(const double* cdf, int count, const poly<do
   return chosen;
 }
 
+struct CdfEntry {
+  poly<std::int32_t> entry;
+  poly<double> rest;  ///< where u lies within the entry, in [0, 1): uniform again
+};
+
+/// sample_cdf() that gives back the part of u it did not use. Rounding may let the last entry end below 1.
+inline CdfEntry sample_cdf_stretched(const double* cdf, int count, const poly<double>& u) {
+  if (count == 1) return {0, u};
+  poly<std::int32_t> chosen = 0;
+  poly<double> low = 0.0;
+  poly<double> high = cdf[0];
+  for (int i = 0; i + 1 < count; ++i) {
+    cn::issue(cn::InstructionClass::mono, 4);
+    cn::poly_if(u >= cdf[i], [&] {
+      chosen = i + 1;
+      low = cdf[i];
+      high = cdf[i + 1];
+    });
+  }
+  constexpr double kBelowOne = 1.0 - 0x1p-53;
+  return {chosen, cn::min((u - low) / (high - low), poly<double>(kBelowOne))};
+}
+
 struct CameraRay {
   Point3 origin;
   Direction3 direction;
 };
 
-/// Through a uniform point of the pixel: the film's filter is a box one pixel wide.
-inline CameraRay sample_camera(const CameraRecord& camera, std::uint64_t seed,
-                               const poly<std::int32_t>& pixel, const poly<std::int32_t>& sample) {
-  const Uniform4 random = uniform4(seed, pixel, sample, 0, Purpose::camera);
+/// Through point (u, v) of the pixel: uniform numbers make the film's filter a box one pixel wide.
+inline CameraRay sample_camera(const CameraRecord& camera, const poly<std::int32_t>& pixel,
+                               const poly<double>& u, const poly<double>& v) {
   // PEs cannot divide integers; half a pixel off the quotient's integers, the truncated product is exact.
   const poly<double> row_position = (cn::convert<double>(pixel) + 0.5) * (1.0 / camera.width);
   const poly<std::int32_t> row = cn::convert<std::int32_t>(row_position);
   const poly<std::int32_t> column = pixel - row * camera.width;
-  const poly<double> x = cn::convert<double>(column) + random.value[0];
-  const poly<double> y = cn::convert<double>(row) + random.value[1];
+  const poly<double> x = cn::convert<double>(column) + u;
+  const poly<double> y = cn::convert<double>(row) + v;
   const Direction3 through = camera.right * x + camera.down * y + camera.corner;
   const Point3 origin{camera.position.x, camera.position.y, camera.position.z};
   return {origin, normalize(through, through)};

@@ -9,6 +9,8 @@ void add_bench_command(CLI::App& app) {
   command.require_subcommand(1);
   add_bench_speed_command(command);
   add_bench_timing_command(command);
+  add_bench_reference_command(command);
+  add_bench_error_command(command);
 }
 
 }  // namespace testbench

@@ -8,7 +8,6 @@
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
 #include "testbench/paper_alternatives.hpp"
-#include "testbench/scene/scene_file.hpp"
 
 namespace testbench {
 namespace {
@@ -27,16 +26,7 @@ struct CalibrateCommand {
   std::string json;
 
   void run() const;
-
- private:
-  Scene load(const std::string& path) const;
 };
-
-Scene CalibrateCommand::load(const std::string& path) const {
-  Scene loaded = load_scene(path);
-  if (!size.empty()) loaded.film = parse_film_size(size);
-  return loaded;
-}
 
 void print_header() {
   std::printf("%-34s %9s %8s %8s   %9s %9s\n%-34s %9s %8s %8s   %9s %9s\n", "assumption", "code", "cycles",
@@ -71,9 +61,10 @@ void CalibrateCommand::run() const {
   if (!json.empty()) require_writable(json);
   CalibrationOptions fit = options;
   fit.level = level.level();
-  const Assumptions base{"preset paper", chip.chip(), paper_program(), load(scene)};
-  const std::vector<Assumptions> all =
-      alternatives ? paper_alternatives(base, load(closed_scene)) : std::vector<Assumptions>{base};
+  const Assumptions base{"preset paper", chip.chip(), paper_program(), load_scene_for_film(scene, size)};
+  const std::vector<Assumptions> all = alternatives
+                                           ? paper_alternatives(base, load_scene_for_film(closed_scene, size))
+                                           : std::vector<Assumptions>{base};
   std::printf("Three constants fitted to three cells (");
   for (const PaperCell& cell : fitted_cells())
     std::printf("%s%s", cell.row == 1 && cell.program == path_tracer::Program::segments ? "" : "; ",

@@ -1,20 +1,23 @@
 #include "testbench/commands/command_options.hpp"
 
 #include <cstdio>
+#include <map>
+#include <optional>
 
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
 #include "testbench/error.hpp"
+#include "testbench/program_names.hpp"
 #include "testbench/render.hpp"
+#include "testbench/scene/scene_file.hpp"
 
 namespace testbench {
 namespace {
 
 constexpr int kMaxFilmSide = 16384;
 
-}  // namespace
-
-FilmSize parse_film_size(const std::string& text) {
+/// "480x480".
+FilmSize parse_size(const std::string& text) {
   long long width = 0;
   long long height = 0;
   char end = 0;
@@ -25,6 +28,8 @@ FilmSize parse_film_size(const std::string& text) {
                      std::to_string(kMaxFilmSide));
   return {static_cast<int>(width), static_cast<int>(height)};
 }
+
+}  // namespace
 
 void SetOptions::add_to(CLI::App& command) {
   command.add_option("--set", settings_, "One parameter, key=value; may be repeated")
@@ -82,6 +87,47 @@ path_tracer::Level LevelOption::level() const {
     throw InputError("--level: found " + level_ + ", this machine executes levels up to v" +
                      std::to_string(2 + static_cast<int>(widest)));
   return wanted;
+}
+
+Scene load_scene_for_film(const std::string& path, const std::string& size) {
+  std::optional<FilmSize> film;
+  if (!size.empty()) film = parse_size(size);
+  Scene loaded = load_scene(path);
+  if (film) loaded.film = *film;
+  return loaded;
+}
+
+void choose_best_sampling(path_tracer::ProgramConfig& program) {
+  program.sampler = path_tracer::Sampler::sobol;
+  program.light_sampling = path_tracer::LightSampling::solid_angle;
+  program.roulette_start = kRouletteStart;
+}
+
+void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program) {
+  using path_tracer::LightSampling;
+  using path_tracer::Sampler;
+  command
+      .add_option("--sampler", program.sampler, "Random numbers: philox (independent) or sobol (stratified)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Sampler>{{"philox", Sampler::philox}, {"sobol", Sampler::sobol}}))
+      ->default_str(sampler_name(program.sampler));
+  command
+      .add_option("--light-sampling", program.light_sampling,
+                  "Points of a light: uniform in its area, or in the solid_angle it takes")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, LightSampling>{
+          {"area", LightSampling::area}, {"solid_angle", LightSampling::solid_angle}}))
+      ->default_str(light_sampling_name(program.light_sampling));
+  command
+      .add_option("--roulette-start", program.roulette_start,
+                  "Segments that a path lives without Russian roulette")
+      ->capture_default_str();
+  command
+      .add_option("--max-survival", program.max_survival,
+                  "Largest probability with which roulette lets a path go on")
+      ->capture_default_str();
+  command.add_option("--seed", program.seed, "Seed of the random numbers")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 }
 
 }  // namespace testbench

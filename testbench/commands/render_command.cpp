@@ -40,7 +40,6 @@ struct RenderCommand {
  private:
   void require_writable_outputs() const;
   RenderRequest make_request() const;
-  Scene load() const;
   void write_outputs(const RenderRequest& request, const RenderResult& result) const;
 };
 
@@ -109,14 +108,6 @@ RenderRequest RenderCommand::make_request() const {
   return request;
 }
 
-Scene RenderCommand::load() const {
-  std::optional<FilmSize> film;
-  if (!size.empty()) film = parse_film_size(size);
-  Scene loaded = load_scene(scene);
-  if (film) loaded.film = *film;
-  return loaded;
-}
-
 void RenderCommand::write_outputs(const RenderRequest& request, const RenderResult& result) const {
   if (!exr.empty()) write_exr(exr, result.film, render_provenance(request, result));
   if (!png.empty()) write_png(png, result.film);
@@ -128,7 +119,7 @@ void RenderCommand::run() {
   const RenderRequest request = make_request();
   require_writable_outputs();
   if (request.options.waves) require_writable_waves(*request.options.waves);
-  const Scene loaded = load();
+  const Scene loaded = load_scene_for_film(scene, size);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
     ProgressBar bar(native ? "render (native)" : "render");
@@ -169,13 +160,7 @@ void add_firmware_options(CLI::App& command, RenderCommand& state) {
       ->capture_default_str();
   command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")
       ->capture_default_str();
-  command
-      .add_option("--roulette-start", program.roulette_start,
-                  "Segments that a path lives without Russian roulette")
-      ->capture_default_str();
-  command.add_option("--seed", program.seed, "Seed of the random numbers")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_sampling_options(command, program);
 }
 
 }  // namespace
@@ -184,6 +169,7 @@ void add_render_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("render", "Render a scene with the firmware on the chip");
   const auto state = std::make_shared<RenderCommand>();
   state->options.work.samples = 16;
+  choose_best_sampling(state->options.program);
   command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
   command.add_option("--samples", state->options.work.samples, "Paths a pixel")
       ->check(CLI::Range(1, 1 << 30))

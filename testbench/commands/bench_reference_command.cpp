@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/command_options.hpp"
+#include "testbench/error.hpp"
+#include "testbench/image_file.hpp"
+#include "testbench/progress_bar.hpp"
+#include "testbench/render_parts.hpp"
+#include "testbench/render_report.hpp"
+#include "testbench/scene/scene_file.hpp"
+
+namespace testbench {
+namespace {
+
+/// What one process renders at a time: long enough to be worth a process, short enough to show progress.
+constexpr int kSamplesOfPart = 64;
+
+struct BenchReferenceCommand {
+  std::string scene;
+  std::string size;
+  std::string exr;
+  RenderOptions options;
+  ChipOptions chip;
+  LevelOption level;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+
+  void run();
+
+ private:
+  RenderResult render(const Scene& loaded) const;
+};
+
+RenderResult BenchReferenceCommand::render(const Scene& loaded) const {
+  RenderResult result{Film(loaded.film, film_scale(loaded))};
+  const std::vector<path_tracer::Work> parts = split_work(options.work, kSamplesOfPart);
+  ProgressBar bar("bench reference");
+  for (std::size_t next = 0; next < parts.size();) {
+    const std::size_t last = std::min(parts.size(), next + std::size_t(jobs));
+    const auto begin = parts.begin();
+    for (const PartialRender& part :
+         render_parts(loaded, options, MachineKind::native,
+                      {begin + std::ptrdiff_t(next), begin + std::ptrdiff_t(last)})) {
+      result.film.merge(part.film);
+      result.counts.segments += part.segments;
+      result.cpu_seconds += part.cpu_seconds;
+    }
+    next = last;
+    bar.show(double(next) / double(parts.size()));
+  }
+  return result;
+}
+
+void BenchReferenceCommand::run() {
+  require_writable(exr);
+  options.chip = chip.chip();
+  options.level = level.level();
+  const Scene loaded = load_scene_for_film(scene, size);
+  const RenderResult result = render(loaded);
+  std::map<std::string, std::string> attributes = render_provenance({scene, options, true}, result);
+  attributes[kSeedAttribute] = std::to_string(options.program.seed);
+  write_exr(exr, result.film, attributes);
+  std::printf("%s, %d x %d, %d samples a pixel, seed %llu: %s, %.1f s CPU\n", loaded.name.c_str(),
+              loaded.film.width, loaded.film.height, options.work.samples,
+              static_cast<unsigned long long>(options.program.seed), exr.c_str(), result.cpu_seconds);
+}
+
+}  // namespace
+
+void add_bench_reference_command(CLI::App& bench) {
+  CLI::App& command = *bench.add_subcommand(
+      "reference", "Render the image that errors are measured against: independent samples, many of them");
+  const auto state = std::make_shared<BenchReferenceCommand>();
+  state->options.work.samples = 16384;
+  // Independent samples, so that the variance layers are the error; light sampled otherwise than by default,
+  // so that a bias of either shows.
+  state->options.program.sampler = path_tracer::Sampler::philox;
+  state->options.program.light_sampling = path_tracer::LightSampling::area;
+  state->options.program.roulette_start = kRouletteStart;
+  state->options.program.seed = kReferenceSeed;
+  command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
+  command.add_option("-o,--output", state->exr, "OpenEXR file to write")->required();
+  command.add_option("--samples", state->options.work.samples, "Paths a pixel")
+      ->check(CLI::Range(2, 1 << 30))
+      ->capture_default_str();
+  command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
+  command.add_option("--seed", state->options.program.seed, "Seed of the random numbers")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.add_option("--jobs", state->jobs, "Processes at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  state->chip.add_to(command, "csx600");
+  state->level.add_to(command);
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

@@ -1,0 +1,13 @@
+#include "testbench/program_names.hpp"
+
+namespace testbench {
+
+const char* sampler_name(path_tracer::Sampler sampler) {
+  return sampler == path_tracer::Sampler::sobol ? "sobol" : "philox";
+}
+
+const char* light_sampling_name(path_tracer::LightSampling sampling) {
+  return sampling == path_tracer::LightSampling::solid_angle ? "solid_angle" : "area";
+}
+
+}  // namespace testbench

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "firmware/path_tracer/program.hpp"
+
+namespace testbench {
+
+/// As the command line and the output files spell them.
+const char* sampler_name(path_tracer::Sampler sampler);
+const char* light_sampling_name(path_tracer::LightSampling sampling);
+
+}  // namespace testbench

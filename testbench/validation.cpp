@@ -46,7 +46,7 @@ class BareChip {
     }
   }
 
-  std::uint8_t* mono() { return chip_.mono_ddr.memory().data(); }
+  std::uint8_t* mono() { return chip_.mono_ddr->memory().data(); }
   model::Cycles now() const { return chip_.control_unit.now(); }
   const model::ControlStatistics& statistics() const { return chip_.control_unit.statistics(); }
 

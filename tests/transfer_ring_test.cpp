@@ -145,7 +145,7 @@ class SynchronousRing : public TransferRingTest {
                          LaneMask::first(8));
   }
   void save_at_once() {
-    synchronous.copy_p2m(kStep, 2, MonoPlaces::array(64 * kStep, 8), synchronous.buffer(kStep),
+    synchronous.copy_p2m(kStep, 2, MonoPlaces::array(64 * kStep, 16), synchronous.buffer(kStep),
                          LaneMask::first(8));
   }
   std::uint64_t& word() { return machine.poly_memory().row(synchronous.buffer(kStep).offset_bytes)[3]; }
@@ -165,7 +165,7 @@ TEST_F(SynchronousRing, EachCopyIsOverBeforeTheNextInstruction) {
   save_at_once();
   EXPECT_EQ(take_calls(), (Calls{"p2m direct 0", "wait direct 0", "p2m direct 0", "wait direct 0"}));
   EXPECT_EQ(machine.under_way(), 0u);
-  EXPECT_EQ(machine.mono()[64 * kStep + 3 * 8], 0x88);
+  EXPECT_EQ(machine.mono()[64 * kStep + 3 * 16], 0x88);
 }
 
 TEST_F(SynchronousRing, LeavesNothingToWaitFor) {

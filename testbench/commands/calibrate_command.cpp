@@ -7,6 +7,7 @@
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/error.hpp"
 #include "testbench/paper_alternatives.hpp"
 #include "testbench/scene/scene_file.hpp"
 
@@ -30,6 +31,7 @@ struct CalibrateCommand {
 
  private:
   Scene load(const std::string& path) const;
+  void write_header(const Calibration& result) const;
 };
 
 Scene CalibrateCommand::load(const std::string& path) const {
@@ -66,7 +68,14 @@ Json to_json(const Assumptions& assumptions, const Calibration& result) {
   return json;
 }
 
+void CalibrateCommand::write_header(const Calibration& result) const {
+  if (!result.converged)
+    throw RunError("--write: found no constants that meet the fitted cells; " + header + " is not written");
+  write_bytes_atomically(header, paper_constants_header(result.constants));
+}
+
 void CalibrateCommand::run() const {
+  require_files_of_their_own({{"--write", header}, {"--json", json}});
   if (!header.empty()) require_writable(header);
   if (!json.empty()) require_writable(json);
   CalibrationOptions fit = options;
@@ -87,8 +96,7 @@ void CalibrateCommand::run() const {
     print_row(assumptions, result);
     std::fflush(stdout);
     rows.push_back(to_json(assumptions, result));
-    if (&assumptions == &all.front() && !header.empty())
-      write_bytes_atomically(header, paper_constants_header(result.constants));
+    if (&assumptions == &all.front() && !header.empty()) write_header(result);
   }
   if (!json.empty()) write_bytes_atomically(json, rows.dump(2) + "\n");
 }

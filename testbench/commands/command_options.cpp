@@ -1,6 +1,8 @@
 #include "testbench/commands/command_options.hpp"
 
 #include <cstdio>
+#include <filesystem>
+#include <map>
 
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
@@ -24,6 +26,18 @@ FilmSize parse_film_size(const std::string& text) {
     throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " +
                      std::to_string(kMaxFilmSide));
   return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+void require_files_of_their_own(const std::vector<OutputOption>& outputs) {
+  std::map<std::filesystem::path, std::string> option_of;
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) continue;
+    const auto [other, is_first] =
+        option_of.emplace(std::filesystem::absolute(path).lexically_normal(), option);
+    if (!is_first)
+      throw InputError(std::string(option) + ": found '" + path + "', which " + other->second +
+                       " writes too; allowed is a file of its own");
+  }
 }
 
 void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {

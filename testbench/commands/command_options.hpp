@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/path_tracer/kernels.hpp"
@@ -12,6 +13,12 @@ namespace testbench {
 
 /// --size, "480x480". Throws InputError.
 FilmSize parse_film_size(const std::string& text);
+
+/// An option that names a file to be written, and the file; "" where the option was not given.
+using OutputOption = std::pair<const char*, std::string>;
+
+/// Throws InputError when two options name one file.
+void require_files_of_their_own(const std::vector<OutputOption>& outputs);
 
 /// --chip and --set.
 class ChipOptions {

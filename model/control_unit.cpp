@@ -93,6 +93,11 @@ void ControlUnit::synchronise_for_observer() {
   synchronise();
 }
 
+void ControlUnit::timed(bool on) {
+  timed_ = on;
+  if (access_observer() != nullptr) access_observer()->timed(on);
+}
+
 void ControlUnit::issue_mono(std::uint64_t instructions) {
   if (!timed_) return;
   statistics_.mono_instructions += instructions;
@@ -138,6 +143,7 @@ void ControlUnit::sem_signal(cn::Semaphore semaphore) {
   }
   spend(CycleCause::semaphore, Cycles(config_.control.semaphore_cycles), semaphore.index);
   semaphore_file_.signal(semaphore.index, now_);
+  if (access_observer() != nullptr) access_observer()->signalled(semaphore);
   if (!shared_with_host_[std::size_t(semaphore.index)]) return;
   synchronise();
   host_event_.notify(sc_core::SC_ZERO_TIME);
@@ -152,6 +158,7 @@ void ControlUnit::sem_wait(cn::Semaphore semaphore) {
   } else {
     wait_for_signal(semaphore);
   }
+  if (access_observer() != nullptr) access_observer()->waited(semaphore);
   synchronise_for_observer();
 }
 
@@ -194,11 +201,13 @@ void ControlUnit::share_with_host(cn::Semaphore semaphore) {
 bool ControlUnit::host_try_wait(cn::Semaphore semaphore) {
   if (!semaphore_file_.has_signal(semaphore.index, clock_.cycle_at(sc_core::sc_time_stamp()))) return false;
   semaphore_file_.take(semaphore.index);
+  if (access_observer() != nullptr) access_observer()->waited(semaphore);
   return true;
 }
 
 void ControlUnit::host_signal(cn::Semaphore semaphore) {
   semaphore_file_.signal(semaphore.index, clock_.cycle_at(sc_core::sc_time_stamp()));
+  if (access_observer() != nullptr) access_observer()->signalled(semaphore);
   signalled_by_host_.notify(sc_core::SC_ZERO_TIME);
 }
 

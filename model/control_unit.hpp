@@ -79,7 +79,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;
   void issue_mono(std::uint64_t instructions) override;
-  void timed(bool on) override { timed_ = on; }
+  void timed(bool on) override;
 
   void signal_at(int index, Cycles at) override;
 

@@ -20,6 +20,7 @@ struct RenderOptions {
   path_tracer::Work work;
   path_tracer::Level level = path_tracer::Level::x86_64_v2;
   std::optional<WaveOptions> waves;  ///< on the chip only
+  bool check_hazards = false;        ///< with kernels built for it, at x86-64-v2 (model/hazard_checker.hpp)
 };
 
 struct RenderResult {

@@ -7,6 +7,8 @@
 
 namespace cn {
 
+class AccessObserver;
+
 /// A piece of every PE's SRAM, at the same address in each.
 struct PolySpan {
   int offset_bytes = 0;
@@ -50,6 +52,10 @@ class PolyMemory {
   const std::vector<Buffer>& buffers() const { return buffers_; }
   std::string map() const;
 
+  /// Told of every access from now on; may be null.
+  void set_observer(AccessObserver* observer) { observer_ = observer; }
+  AccessObserver* observer() const { return observer_; }
+
   std::uint64_t* words() { return words_.data(); }
   const std::uint64_t* words() const { return words_.data(); }
 
@@ -64,6 +70,7 @@ class PolyMemory {
   int capacity_bytes_;
   std::vector<Buffer> buffers_;
   std::vector<std::uint64_t> words_;
+  AccessObserver* observer_ = nullptr;
 };
 
 }  // namespace cn

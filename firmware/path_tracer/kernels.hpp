@@ -131,4 +131,7 @@ enum class Level : std::uint8_t { x86_64_v2, x86_64_v3, x86_64_v4 };
 
 const Kernels& kernels(Level level);
 
+/// The same, built to report their SRAM accesses to a cn::AccessObserver; for every x86-64 machine.
+const Kernels& observed_kernels();
+
 }  // namespace path_tracer

@@ -33,6 +33,7 @@ struct ReproduceCommand {
   ChipOptions chip;
   LevelOption level;
   int samples = 4;
+  bool check_hazards = false;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::string json;
 
@@ -137,6 +138,7 @@ void ReproduceCommand::run() const {
   options.chip = chip.chip();
   options.level = level.level();
   options.work.samples = samples;
+  options.check_hazards = check_hazards;
   const Scene loaded = load_scene(scene);
   const std::vector<Cell> cells = measure(loaded, options);
   std::printf("%s at %d x %d, %d samples a pixel; chip %s\n\n", loaded.name.c_str(), loaded.film.width,
@@ -164,6 +166,9 @@ void add_reproduce_command(CLI::App& app) {
   command.add_option("--jobs", state->jobs, "Runs at a time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  command.add_flag(
+      "--check-hazards", state->check_hazards,
+      "Stop when the firmware uses what a transfer may still read or write (kernels at level v2)");
   command.add_option("--json", state->json, "Also write the cells to this file");
   command.callback([state] { state->run(); });
 }

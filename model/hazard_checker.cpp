@@ -68,13 +68,13 @@ void HazardChecker::kernel_is_silent() noexcept {
 
 void HazardChecker::touches_mono(Access access, cn::MonoAddress first, std::size_t bytes) {
   if (!timed_ || bytes == 0) return;
-  check_mono(MonoFootprint(MonoRange{first, bytes}), access, "the control unit ");
+  check_mono(MonoFootprint(MonoRange{first, bytes}), access, "the control unit");
   throw_if_found();
 }
 
 void HazardChecker::host_touches_mono(Access access, const MonoRange& range) noexcept {
   if (!timed_ || range.bytes == 0) return;
-  check_mono(MonoFootprint(range), access, "the host ");
+  check_mono(MonoFootprint(range), access, "the host");
 }
 
 void HazardChecker::transfer_starts(const cn::Transfer& transfer) {
@@ -94,12 +94,18 @@ void HazardChecker::transfer_starts(const cn::Transfer& transfer) {
                   transfer.done,
                   clock_ ? clock_() : 0,
                   of_direction++,
-                  MonoFootprint(transfer, machine_.num_pes())};
+                  MonoFootprint(transfer, machine_.num_pes()),
+                  false};
   check_poly(request);
-  check_mono(request.mono, request.mono_access(), describe(request, false) + " ");
+  check_mono(request);
   throw_if_found();
   for (const PolyUse& use : request.poly_uses()) occupancy_.add(use.access, use.span, request.pes);
   outstanding_.push_back(std::move(request));
+}
+
+void HazardChecker::timed(bool on) {
+  timed_ = on;
+  for (Request& request : outstanding_) request.seen_by_untimed_work = true;
 }
 
 void HazardChecker::signalled(cn::Semaphore semaphore) {
@@ -158,16 +164,30 @@ void HazardChecker::check_poly(const Request& request) {
   }
 }
 
+void HazardChecker::check_mono(const Request& request) {
+  if (!hazard_.empty()) return;
+  const Access access = request.mono_access();
+  for (const Request& holder : outstanding_) {
+    if (!conflicts(access, holder.mono_access())) continue;
+    if (access == holder.mono_access() && holder.seen_by_untimed_work) continue;
+    const std::optional<MonoRange> shared = request.mono.overlap(holder.mono);
+    if (shared) return found_in_mono(describe(request, false), access, *shared, holder);
+  }
+}
+
 void HazardChecker::check_mono(const MonoFootprint& footprint, Access access, const std::string& who) {
   if (!hazard_.empty()) return;
-  for (const Request& request : outstanding_) {
-    if (!conflicts(access, request.mono_access())) continue;
-    const std::optional<MonoRange> shared = footprint.overlap(request.mono);
-    if (!shared) continue;
-    hazard_ = opening(false) + who + verb(access) + " " + mono_name(*shared) + ", which " +
-              describe(request, true) + " still " + verb(request.mono_access());
-    return;
+  for (const Request& holder : outstanding_) {
+    if (!conflicts(access, holder.mono_access())) continue;
+    const std::optional<MonoRange> shared = footprint.overlap(holder.mono);
+    if (shared) return found_in_mono(who, access, *shared, holder);
   }
+}
+
+void HazardChecker::found_in_mono(const std::string& who, Access access, const MonoRange& shared,
+                                  const Request& holder) {
+  hazard_ = opening(false) + who + " " + verb(access) + " " + mono_name(shared) + ", which " +
+            describe(holder, true) + " still " + verb(holder.mono_access());
 }
 
 void HazardChecker::found_in_poly(const std::string& who, Access access, cn::PolySpan bytes,

@@ -32,8 +32,9 @@ namespace model {
 /// hold in poly memory belong to what it reads, as the engine asks the PEs one after the other (US
 /// 7,363,472).
 ///
-/// Untimed work sees all data at once by design and is not judged. What a kernel reads of mono memory is
-/// judged where the control unit asks for it (Machine::read_mono).
+/// Untimed work sees all data at once by design and is not judged. A save may overwrite what untimed work has
+/// seen of an earlier save before that one was waited for: saves land in their order. What a kernel reads of
+/// mono memory is judged where the control unit asks for it (Machine::read_mono).
 class HazardChecker : public cn::AccessObserver {
  public:
   /// The machine's cycle, of a machine that has a clock.
@@ -53,6 +54,8 @@ class HazardChecker : public cn::AccessObserver {
   void throw_if_found() const;
 
   std::size_t outstanding() const { return outstanding_.size(); }
+  /// Transfers with data so far.
+  std::uint64_t requests() const { return next_id_; }
 
   // These throw cn::MachineFault, one line, but what a kernel or the host may be in the midst of:
   // touches_poly(), waited() and signalled().
@@ -65,7 +68,7 @@ class HazardChecker : public cn::AccessObserver {
   void transfer_starts(const cn::Transfer& transfer) override;
   void waited(cn::Semaphore semaphore) override;
   void signalled(cn::Semaphore semaphore) override;
-  void timed(bool on) override { timed_ = on; }
+  void timed(bool on) override;
 
  private:
   struct PolyUse {
@@ -83,6 +86,7 @@ class HazardChecker : public cn::AccessObserver {
     Cycles queued = 0;
     std::uint64_t of_direction = 0;  ///< how many of its direction and semaphore were started before
     MonoFootprint mono;
+    bool seen_by_untimed_work = false;
 
     std::vector<PolyUse> poly_uses() const;
     cn::Access mono_access() const {
@@ -104,7 +108,10 @@ class HazardChecker : public cn::AccessObserver {
   std::optional<cn::PolySpan> poly_addresses(const cn::MonoPlaces& places) const;
 
   void check_poly(const Request& request);
+  void check_mono(const Request& request);
   void check_mono(const MonoFootprint& footprint, cn::Access access, const std::string& who);
+  void found_in_mono(const std::string& who, cn::Access access, const MonoRange& shared,
+                     const Request& holder);
   void found_in_poly(const std::string& who, cn::Access access, cn::PolySpan bytes,
                      const PolyOccupancy::Conflict& conflict);
 

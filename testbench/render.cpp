@@ -123,10 +123,8 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
     if (options.waves) waves.emplace(*options.waves, chip);
     chip.control_unit.load([&](cn::Machine& machine) { run.firmware(machine); });
     sc_core::sc_start();
-    chip.control_unit.rethrow_failure();
-    if (!host.finished())
-      throw RunError("the chip stopped at cycle " + std::to_string(chip.control_unit.now()) +
-                     " with its firmware waiting for the host");
+    chip.control_unit.require_finished();
+    if (!host.finished()) throw RunError("the firmware has ended, but the host has not");
     run.result().chip = collect_statistics(chip, host.finished_cycle());
     RenderResult result = run.finish();
     if (waves) waves->finish();

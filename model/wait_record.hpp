@@ -27,7 +27,10 @@ class WaitRecord {
   void goes_on(Waiter waiter, Cycles at);
   void signalled(int semaphore, Signaller by, Cycles at) { last_signal_[std::size_t(semaphore)] = {by, at}; }
   void started(const cn::Transfer& transfer, Cycles at);
-  void ran_kernel(const char* name, Cycles at) { last_kernel_ = name, last_kernel_cycle_ = at; }
+  void ran_kernel(const char* name, Cycles at) {
+    last_kernel_ = name;
+    last_kernel_cycle_ = at;
+  }
   /// From now on the host is one of those who may signal or wait.
   void share_with_host(cn::Semaphore semaphore) { shared_with_host_.at(std::size_t(semaphore.index)) = true; }
 

@@ -9,7 +9,7 @@
 namespace cn {
 
 /// Whether poly code is built to report its SRAM accesses. A build of its own, because a test in every access
-/// that is hardly ever true cost the kernels 3 % of a render: registers are spilled around the call.
+/// that is hardly ever true was 4 % of a render's instructions: registers are spilled around the call.
 #if defined(CN_OBSERVED_SRAM)
 inline constexpr bool kObservedSram = true;
 #else

@@ -105,6 +105,7 @@ void HazardChecker::transfer_starts(const cn::Transfer& transfer) {
 
 void HazardChecker::timed(bool on) {
   timed_ = on;
+  if (on) return;
   for (Request& request : outstanding_) request.seen_by_untimed_work = true;
 }
 

@@ -182,8 +182,8 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
     mono_window_.move(transfer, *mono_socket.operator->());
     return;
   }
-  spend(CycleCause::transfer_call, Cycles(config_.control.transfer_call_cycles));
   wait_record_.started(transfer, now_);
+  spend(CycleCause::transfer_call, Cycles(config_.control.transfer_call_cycles));
   waits_for_save_[std::size_t(transfer.done.index)] = transfer.direction == cn::Direction::poly_to_mono;
   settle_pio(now_);
   report_begin(CycleCause::wait_pio_queue);

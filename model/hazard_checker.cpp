@@ -212,12 +212,12 @@ std::string HazardChecker::opening(bool within_kernel) const {
   return text + ": ";
 }
 
-std::string HazardChecker::describe(const Request& request, bool queued) const {
+std::string HazardChecker::describe(const Request& request, bool with_start) const {
   const bool is_load = request.direction == Direction::mono_to_poly;
   const int bytes = request.span.size_bytes * request.pes.count();
   return "request " + std::to_string(request.id) + " (" + (is_load ? "load, " : "save, ") +
          std::to_string(bytes) + " bytes, " +
-         (queued && clock_ ? "queued at cycle " + std::to_string(request.queued) + ", " : "") +
+         (with_start && clock_ ? "started at cycle " + std::to_string(request.started) + ", " : "") +
          "semaphore '" + machine_.semaphore_name(request.done) + "')";
 }
 

@@ -83,7 +83,7 @@ class HazardChecker : public cn::AccessObserver {
     std::optional<cn::PolySpan> addresses;
     cn::LaneMask pes;
     cn::Semaphore done;
-    Cycles queued = 0;
+    Cycles started = 0;
     std::uint64_t of_direction = 0;  ///< how many of its direction and semaphore were started before
     MonoFootprint mono;
     bool seen_by_untimed_work = false;
@@ -116,7 +116,7 @@ class HazardChecker : public cn::AccessObserver {
                      const PolyOccupancy::Conflict& conflict);
 
   std::string opening(bool within_kernel) const;
-  std::string describe(const Request& request, bool queued) const;
+  std::string describe(const Request& request, bool with_start) const;
   std::string mono_name(const MonoRange& range) const;
   std::string poly_name(cn::PolySpan bytes) const;
 

@@ -10,6 +10,7 @@ namespace {
 using cn::LaneMask;
 using cn::Machine;
 using cn::Semaphore;
+using model::TimingStyle;
 using test_support::expect_parts;
 using test_support::fault_of;
 using test_support::kFake;
@@ -19,9 +20,9 @@ using test_support::test_chip;
 constexpr Semaphore kToHost{0};
 constexpr Semaphore kFromHost{1};
 
-class Deadlock : public test_support::ControlBench {
+class Deadlock : public test_support::ControlBench, public testing::WithParamInterface<TimingStyle> {
  protected:
-  Deadlock() { build(test_chip()); }
+  Deadlock() { build(test_chip(), GetParam()); }
 
   std::string report() {
     return fault_of([this] { chip->control_unit.require_finished(); });
@@ -34,7 +35,7 @@ class Deadlock : public test_support::ControlBench {
   }
 };
 
-TEST_F(Deadlock, OfASemaphoreThatNobodySignals) {
+TEST_P(Deadlock, OfASemaphoreThatNobodySignals) {
   run([](Machine& machine) {
     machine.issue_mono(20);
     machine.sem_wait(machine.allocate_semaphore("forgotten"));
@@ -48,7 +49,7 @@ TEST_F(Deadlock, OfASemaphoreThatNobodySignals) {
             "signal it; never signalled, no transfer was started on it; no kernel has run");
 }
 
-TEST_F(Deadlock, OfOneWaitTooManyNamesTheLastTransferAndKernel) {
+TEST_P(Deadlock, OfOneWaitTooManyNamesTheLastTransferAndKernel) {
   run([](Machine& machine) {
     const Semaphore done = machine.allocate_semaphore("save buffer 3");
     const Semaphore other = machine.allocate_semaphore("load buffer 1");
@@ -92,7 +93,7 @@ class Host : public sc_core::sc_module {
   int answers_;
 };
 
-TEST_F(Deadlock, OfHostAndFirmwareThatWaitForEachOther) {
+TEST_P(Deadlock, OfHostAndFirmwareThatWaitForEachOther) {
   Host host("host", *chip, 1);
   run([](Machine& machine) {
     allocate_host_semaphores(machine);
@@ -113,7 +114,7 @@ TEST_F(Deadlock, OfHostAndFirmwareThatWaitForEachOther) {
                           "waits itself; last signalled by the control unit at cycle 1011"});
 }
 
-TEST_F(Deadlock, OfAHostThatNeverAnswers) {
+TEST_P(Deadlock, OfAHostThatNeverAnswers) {
   Host host("host", *chip, 0);
   run([](Machine& machine) {
     allocate_host_semaphores(machine);
@@ -126,7 +127,7 @@ TEST_F(Deadlock, OfAHostThatNeverAnswers) {
                           "the host waits for no semaphore; it took one of 'to host' at cycle 1001"});
 }
 
-TEST_F(Deadlock, OfAHostThatNeverLooks) {
+TEST_P(Deadlock, OfAHostThatNeverLooks) {
   chip->control_unit.share_with_host(kFromHost);
   run([](Machine& machine) {
     allocate_host_semaphores(machine);
@@ -137,15 +138,21 @@ TEST_F(Deadlock, OfAHostThatNeverLooks) {
   expect_parts(report(), {"'from host'", "the host waits for no semaphore", "1 of 'done'"});
 }
 
-TEST_F(Deadlock, IsNoneOfAFirmwareThatEnds) {
+TEST_P(Deadlock, IsNoneOfAFirmwareThatEnds) {
   run([](Machine& machine) { machine.issue_mono(1); });
   EXPECT_EQ(report(), "");
 }
 
-TEST_F(Deadlock, OfAFirmwareThatIsNeverStarted) {
+TEST_P(Deadlock, OfAFirmwareThatIsNeverStarted) {
   chip->control_unit.load([](Machine&) {});
   sc_core::sc_start();
   EXPECT_EQ(report(), "the firmware was not started: SystemC has nothing left to do");
 }
+
+INSTANTIATE_TEST_SUITE_P(Timing, Deadlock,
+                         testing::Values(TimingStyle::loosely_timed, TimingStyle::approximately_timed),
+                         [](const auto& style) {
+                           return style.param == TimingStyle::loosely_timed ? "Loose" : "Approximate";
+                         });
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST_F(HazardChecker, NamesKernelBufferRequestAndCycle) {
   EXPECT_EQ(
       message,
       "hazard at cycle 1500: kernel 'reader' reads 'buffer a' (poly bytes 12..15) of PE 0, which request 1 "
-      "(load, 320 bytes, queued at cycle 1234, semaphore 's') still writes");
+      "(load, 320 bytes, started at cycle 1234, semaphore 's') still writes");
 }
 
 TEST_F(HazardChecker, ALoadsBufferIsItsOwnUntilTheWait) {

@@ -16,6 +16,7 @@ namespace {
 using cn::LaneMask;
 using cn::Machine;
 using model::PioArbitration;
+using model::TimingStyle;
 using path_tracer::Program;
 using test_support::expect_parts;
 using test_support::fault_of;
@@ -27,10 +28,10 @@ using testbench::RenderResult;
 constexpr PioArbitration kArbitrations[] = {
     PioArbitration::strict_fifo, PioArbitration::reads_overtake_writes, PioArbitration::queue_per_direction};
 
-class HazardOnChip : public test_support::ControlBench {
+class HazardOnChip : public test_support::ControlBench, public testing::WithParamInterface<TimingStyle> {
  protected:
   void check(const model::ChipConfig& config = test_chip()) {
-    build(config);
+    build(config, GetParam());
     checker = std::make_unique<model::HazardChecker>(chip->control_unit,
                                                      [this] { return chip->control_unit.now(); });
     chip->control_unit.set_access_observer(checker.get());
@@ -42,7 +43,7 @@ class HazardOnChip : public test_support::ControlBench {
   std::unique_ptr<model::HazardChecker> checker;
 };
 
-TEST_F(HazardOnChip, IsFoundHoweverLongTheTransferHasBeenOver) {
+TEST_P(HazardOnChip, IsFoundHoweverLongTheTransferHasBeenOver) {
   check();
   run([](Machine& machine) {
     machine.poly_memory().allocate("loaded", 32);
@@ -54,10 +55,10 @@ TEST_F(HazardOnChip, IsFoundHoweverLongTheTransferHasBeenOver) {
   });
   EXPECT_EQ(fault(),
             "hazard at cycle 1001030: kernel 'number_ascending' writes 'loaded' (poly bytes 8..11) of PE 0, "
-            "which request 0 (load, 256 bytes, queued at cycle 1030, semaphore 'done') still writes");
+            "which request 0 (load, 256 bytes, started at cycle 1030, semaphore 'done') still writes");
 }
 
-TEST_F(HazardOnChip, AWaitMakesItSound) {
+TEST_P(HazardOnChip, AWaitMakesItSound) {
   check();
   run_well([](Machine& machine) {
     const cn::Semaphore done = machine.allocate_semaphore("done");
@@ -72,7 +73,7 @@ TEST_F(HazardOnChip, AWaitMakesItSound) {
 
 /// The order in which a wait tells is the engine's, whatever the arbitration: the first of two loads is over
 /// when the first wait returns, though a save of the same semaphore may be earlier or later.
-TEST_F(HazardOnChip, OneDirectionFinishesInTheOrderOfItsStarts) {
+TEST_P(HazardOnChip, OneDirectionFinishesInTheOrderOfItsStarts) {
   struct Order : model::PioObserver {
     void started(const model::PioEvent&) override {}
     void finished(const model::PioEvent& event) override {
@@ -94,7 +95,7 @@ TEST_F(HazardOnChip, OneDirectionFinishesInTheOrderOfItsStarts) {
     model::ChipConfig config = test_chip();
     config.pio.arbitration = arbitration;
     config.pio.queue_depth = 8;
-    build(config);
+    build(config, GetParam());
     chip->dma_engine.set_observer(&order);
     run_well([](Machine& machine) {
       const cn::Semaphore done = machine.allocate_semaphore("done");
@@ -110,7 +111,7 @@ TEST_F(HazardOnChip, OneDirectionFinishesInTheOrderOfItsStarts) {
   }
 }
 
-TEST_F(HazardOnChip, RequestsHaveTheEnginesNumbers) {
+TEST_P(HazardOnChip, RequestsHaveTheEnginesNumbers) {
   struct Ids : model::PioObserver {
     void started(const model::PioEvent& event) override { enqueued[event.id] = event.enqueued; }
     void finished(const model::PioEvent&) override {}
@@ -131,10 +132,17 @@ TEST_F(HazardOnChip, RequestsHaveTheEnginesNumbers) {
     machine.issue_mono(7);
     machine.number_ascending(LaneMask::first(8), {8});
   });
-  chip->dma_engine.serve_next();
+  if (GetParam() == TimingStyle::loosely_timed) chip->dma_engine.serve_next();
   ASSERT_EQ(ids.enqueued.size(), 4u);
-  expect_parts(fault(), {"request 3 (load", "queued at cycle " + std::to_string(ids.enqueued.at(3)) + ","});
+  expect_parts(fault(), {"request 3 (load", "started at cycle " + std::to_string(ids.enqueued.at(3)) + ","});
 }
+
+/// How the control unit came to this cycle and who carries the data makes no difference.
+INSTANTIATE_TEST_SUITE_P(Timing, HazardOnChip,
+                         testing::Values(TimingStyle::loosely_timed, TimingStyle::approximately_timed),
+                         [](const auto& style) {
+                           return style.param == TimingStyle::loosely_timed ? "Loose" : "Approximate";
+                         });
 
 RenderResult render(const testbench::Scene& scene, const RenderOptions& options) {
   sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
@@ -172,6 +180,20 @@ TEST(CheckedRender, HasTheSameBitsCyclesAndStatistics) {
           expect_no_change(scene, options);
         }
       }
+    }
+  }
+}
+
+TEST(CheckedRender, HasTheSameBitsAndCyclesApproximatelyTimed) {
+  const testbench::Scene scene = test_support::small_cornell_box({6, 4});
+  for (const Program program : {Program::segments, Program::direct, Program::full}) {
+    for (const int n : {0, 1, 3}) {
+      SCOPED_TRACE(testing::Message() << "n " << n);
+      RenderOptions options = test_support::render_options(program, 8);
+      options.timing = TimingStyle::approximately_timed;
+      options.chip.chip.pes = 16;
+      options.program.n = n;
+      expect_no_change(scene, options);
     }
   }
 }

@@ -66,15 +66,15 @@ TEST(BrokenFirmware, IsStoppedWhicheverWaitIsLeftOut) {
       const ProgramConfig config = checked_program(program, n);
       const CheckedRun sound = run_checked(small_scene(), config, 8, 1);
       ASSERT_EQ(sound.fault, "");
-      ASSERT_GT(sound.waits, 50);
-      for (int wait = 0; wait < sound.waits; ++wait) {
+      ASSERT_GT(sound.waits.size(), 50u);
+      for (const int wait : sound.waits) {
         Mutation mutation;
         mutation.dropped_wait = wait;
         const CheckedRun broken = run_checked(small_scene(), config, 8, 1, mutation);
         expect_one_line(broken.fault);
         expect_parts(broken.fault, {"hazard", "kernel '", "request ", " bytes, ", "semaphore '"});
         ASSERT_FALSE(testing::Test::HasFailure())
-            << "program " << int(program) << ", n " << n << ", wait " << wait << " of " << sound.waits;
+            << "program " << int(program) << ", n " << n << ", wait " << wait << " of " << sound.waits.size();
       }
     }
   }
@@ -88,7 +88,7 @@ TEST(BrokenFirmware, SavesThatOverlapAreNamed) {
   const CheckedRun broken = run_checked(small_scene(), checked_program(Program::full, 1), 8, 2, mutation);
   expect_one_line(broken.fault);
   expect_parts(broken.fault, {"(save, 448 bytes, semaphore 'save buffer 0') writes 'path bin' (mono bytes ",
-                              "which request 0 (save, 192 bytes, ", "still writes"});
+                              "which request 0 (save, 320 bytes, ", "still writes"});
 }
 
 TEST(BrokenFirmware, BinsThatOverlapAreNamed) {
@@ -97,7 +97,7 @@ TEST(BrokenFirmware, BinsThatOverlapAreNamed) {
     layout.lighting_bin.address = layout.scatter_bin.address + 64;
   };
   const CheckedRun broken = run_checked(small_scene(), checked_program(Program::full, 1), 8, 2, mutation);
-  expect_parts(broken.fault, {"after kernel 'scatter'", "'scatter bin'", "'save buffer ", "still writes"});
+  expect_parts(broken.fault, {"after kernel 'illuminate'", "'scatter bin'", "'save buffer ", "still writes"});
 }
 
 TEST(BrokenFirmware, KernelsThatReportNothingAreRefused) {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "firmware/path_tracer/path_tracer.hpp"
 #include "model/hazard_checker.hpp"
@@ -17,8 +18,10 @@ struct Mutation {
 };
 
 struct CheckedRun {
-  std::string fault;           ///< empty when the firmware came to its end
-  int waits = 0;               ///< for transfers, in timed work
+  std::string fault;  ///< empty when the firmware came to its end
+  /// Numbers of the waits for transfers, in timed work, that the firmware cannot do without: up to the last
+  /// on a semaphore that ends a transfer with data. What comes after has nothing to wait for.
+  std::vector<int> waits;
   std::uint64_t requests = 0;  ///< that moved data
 };
 

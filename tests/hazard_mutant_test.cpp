@@ -26,11 +26,9 @@ bool has_all(const std::string& message, const std::vector<std::string>& parts) 
 }
 
 /// Empty when it came to its end, or was refused before it began.
-std::string fault_of(Program program, int n, int blocks) {
+std::string fault_of(const testbench::Scene& scene, Program program, int n, int blocks) {
   try {
-    return test_support::run_checked(test_support::small_scene(),
-                                     test_support::checked_program(program, n, blocks), 8, 1)
-        .fault;
+    return test_support::run_checked(scene, test_support::checked_program(program, n, blocks), 8, 1).fault;
   } catch (const path_tracer::ProgramError&) {
     return "";
   }
@@ -42,14 +40,16 @@ TEST(Mutant, IsStopped) {
   const std::vector<std::string> parts = expected_parts();
   std::set<std::string> stopped;
   std::set<std::string> as_expected;
-  for (const Program program : {Program::segments, Program::direct, Program::full}) {
-    for (const int n : {0, 1, 3, 8}) {
-      for (const int blocks : {1, 2, 4}) {
-        const std::string fault = fault_of(program, n, blocks);
-        if (fault.empty()) continue;
-        test_support::expect_one_line(fault);
-        stopped.insert(fault);
-        if (has_all(fault, parts)) as_expected.insert(fault);
+  for (const testbench::Scene& scene : {test_support::small_scene(), test_support::open_scene()}) {
+    for (const Program program : {Program::segments, Program::direct, Program::full}) {
+      for (const int n : {0, 1, 3, 8}) {
+        for (const int blocks : {1, 2, 4, 8}) {
+          const std::string fault = fault_of(scene, program, n, blocks);
+          if (fault.empty()) continue;
+          test_support::expect_one_line(fault);
+          stopped.insert(fault);
+          if (has_all(fault, parts)) as_expected.insert(fault);
+        }
       }
     }
   }

@@ -105,4 +105,8 @@ testbench::Scene small_scene() {
   return closed_cube(0.8, 1.0, {6, 4});
 }
 
+testbench::Scene open_scene() {
+  return triangle_soup(20, 3, {9, 7});
+}
+
 }  // namespace test_support

@@ -31,6 +31,8 @@ CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::Program
 
 /// Twelve triangles that all emit, and rays that miss nothing; 6 x 4 pixels.
 testbench::Scene small_scene();
+/// Most of its paths end at once, so that radiance has several blocks of them a pass; 9 x 7 pixels.
+testbench::Scene open_scene();
 
 inline path_tracer::ProgramConfig checked_program(path_tracer::Program program, int n, int bin_blocks = 4) {
   path_tracer::ProgramConfig config;

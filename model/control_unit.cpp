@@ -1,5 +1,6 @@
 #include "model/control_unit.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 
@@ -55,6 +56,7 @@ void ControlUnit::run() {
   wait(start_event_);
   now_ = clock_.cycle_at(sc_core::sc_time_stamp());
   start_cycle_ = now_;
+  firmware_started_ = true;
   try {
     if (firmware_) firmware_(*this);
     synchronise();
@@ -69,6 +71,18 @@ void ControlUnit::run() {
 
 void ControlUnit::rethrow_failure() const {
   if (failure_) std::rethrow_exception(failure_);
+}
+
+void ControlUnit::require_finished() const {
+  rethrow_failure();
+  if (finished_) return;
+  if (firmware_started_) throw cn::MachineFault(deadlock());
+  throw cn::MachineFault("the firmware was not started: SystemC has nothing left to do");
+}
+
+std::string ControlUnit::deadlock() const {
+  return wait_record_.deadlock(std::max(now_, clock_.cycle_at(sc_core::sc_time_stamp())), semaphore_file_,
+                               semaphore_names());
 }
 
 void ControlUnit::set_observer(ControlObserver* observer, Cycles sync_cycles) {
@@ -128,6 +142,11 @@ void ControlUnit::synchronise_for_observer() {
   synchronise();
 }
 
+void ControlUnit::timed(bool on) {
+  timed_ = on;
+  if (access_observer() != nullptr) access_observer()->timed(on);
+}
+
 void ControlUnit::issue_mono(std::uint64_t instructions) {
   if (!timed_) return;
   statistics_.mono_instructions += instructions;
@@ -151,6 +170,7 @@ void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
   spend(CycleCause::poly, cost.cycles);
   spend(CycleCause::stolen,
         stolen_cycles(words, config_.pio.stolen_sram_cycles, cost.sram_cycles, cost.cycles));
+  wait_record_.ran_kernel(kernel, now_);
   if (observer_ != nullptr)
     observer_->ran_kernel(kernel, start, now_, static_cast<int>(issued.root().enabled_lanes));
   synchronise_for_observer();
@@ -162,6 +182,7 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
     mono_window_.move(transfer, *mono_socket.operator->());
     return;
   }
+  wait_record_.started(transfer, now_);
   spend(CycleCause::transfer_call, Cycles(config_.control.transfer_call_cycles));
   waits_for_save_[std::size_t(transfer.done.index)] = transfer.direction == cn::Direction::poly_to_mono;
   settle_pio(now_);
@@ -172,6 +193,7 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
 
 void ControlUnit::signal_at(int index, Cycles at) {
   semaphore_file_.signal(index, at);
+  wait_record_.signalled(index, Signaller::pio, at);
 }
 
 void ControlUnit::sem_signal(cn::Semaphore semaphore) {
@@ -181,6 +203,8 @@ void ControlUnit::sem_signal(cn::Semaphore semaphore) {
   }
   spend(CycleCause::semaphore, Cycles(config_.control.semaphore_cycles), semaphore.index);
   semaphore_file_.signal(semaphore.index, now_);
+  wait_record_.signalled(semaphore.index, Signaller::control_unit, now_);
+  if (access_observer() != nullptr) access_observer()->signalled(semaphore);
   if (!shared_with_host_[std::size_t(semaphore.index)]) return;
   synchronise();
   host_event_.notify(sc_core::SC_ZERO_TIME);
@@ -191,11 +215,14 @@ void ControlUnit::sem_wait(cn::Semaphore semaphore) {
   if (!timed_) return;
   spend(CycleCause::semaphore, Cycles(config_.control.semaphore_cycles), semaphore.index);
   settle_pio(now_);
+  wait_record_.waits(Waiter::control_unit, semaphore, now_);
   if (shared_with_host_[std::size_t(semaphore.index)]) {
     wait_for_host(semaphore);
   } else {
     wait_for_signal(semaphore);
   }
+  wait_record_.goes_on(Waiter::control_unit, now_);
+  if (access_observer() != nullptr) access_observer()->waited(semaphore);
   synchronise_for_observer();
 }
 
@@ -206,9 +233,7 @@ void ControlUnit::wait_for_signal(cn::Semaphore semaphore) {
   if (!at) report_begin(cause, semaphore.index);
   // Nobody can queue another request while this thread waits, so the engine may decide on and on.
   while (!at && serve_next_request()) at = semaphore_file_.take(semaphore.index);
-  if (!at)
-    throw cn::MachineFault("deadlock at cycle " + std::to_string(now_) + ": wait on semaphore '" +
-                           semaphore_name(semaphore) + "', which no outstanding transfer will signal");
+  if (!at) throw cn::MachineFault(deadlock());
   if (*at > now_) spend(cause, *at - now_, semaphore.index);
 }
 
@@ -236,16 +261,24 @@ void ControlUnit::wait_for_host_event() {
 
 void ControlUnit::share_with_host(cn::Semaphore semaphore) {
   shared_with_host_.at(std::size_t(semaphore.index)) = true;
+  wait_record_.share_with_host(semaphore);
 }
 
 bool ControlUnit::host_try_wait(cn::Semaphore semaphore) {
-  if (!semaphore_file_.has_signal(semaphore.index, clock_.cycle_at(sc_core::sc_time_stamp()))) return false;
+  const Cycles cycle = clock_.cycle_at(sc_core::sc_time_stamp());
+  wait_record_.waits(Waiter::host, semaphore, cycle);
+  if (!semaphore_file_.has_signal(semaphore.index, cycle)) return false;
   semaphore_file_.take(semaphore.index);
+  wait_record_.goes_on(Waiter::host, cycle);
+  if (access_observer() != nullptr) access_observer()->waited(semaphore);
   return true;
 }
 
 void ControlUnit::host_signal(cn::Semaphore semaphore) {
-  semaphore_file_.signal(semaphore.index, clock_.cycle_at(sc_core::sc_time_stamp()));
+  const Cycles cycle = clock_.cycle_at(sc_core::sc_time_stamp());
+  semaphore_file_.signal(semaphore.index, cycle);
+  wait_record_.signalled(semaphore.index, Signaller::host, cycle);
+  if (access_observer() != nullptr) access_observer()->signalled(semaphore);
   signalled_by_host_.notify(sc_core::SC_ZERO_TIME);
 }
 

@@ -20,6 +20,7 @@
 #include "model/pio_port.hpp"
 #include "model/semaphore_file.hpp"
 #include "model/stolen_cycles.hpp"
+#include "model/wait_record.hpp"
 
 namespace model {
 
@@ -60,11 +61,16 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   bool finished() const { return finished_; }
   /// What the firmware threw, if it did.
   void rethrow_failure() const;
+  /// Once SystemC has nothing left to do: throws what the firmware threw, or cn::MachineFault with the wait
+  /// graph if it has not come to its end.
+  void require_finished() const;
   const sc_core::sc_event& finished_event() const { return finished_event_; }
 
   /// Semaphores that the host shares: the firmware's signals reach `host_event`, the host signals with
   /// host_signal().
   void share_with_host(cn::Semaphore semaphore);
+  /// The wait graph at present (WaitRecord::deadlock).
+  std::string deadlock() const;
   const sc_core::sc_event& host_event() const { return host_event_; }
   /// Takes one signal that the firmware has given by now; false when there is none.
   bool host_try_wait(cn::Semaphore semaphore);
@@ -86,7 +92,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;
   void issue_mono(std::uint64_t instructions) override;
-  void timed(bool on) override { timed_ = on; }
+  void timed(bool on) override;
 
   void signal_at(int index, Cycles at) override;
 
@@ -122,6 +128,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   ClockDomain clock_;
   PeArray& pe_array_;
   SemaphoreFile semaphore_file_;
+  WaitRecord wait_record_;
   DataCache data_cache_;
   MonoWindow mono_window_;
   std::unique_ptr<AtTransport> at_transport_;
@@ -135,6 +142,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   Cycles now_ = 0;
   Cycles start_cycle_ = 0;
   bool timed_ = true;
+  bool firmware_started_ = false;
   bool finished_ = false;
   std::exception_ptr failure_;
   sc_core::sc_event start_event_;

@@ -34,6 +34,9 @@ class SemaphoreFile {
     return !pending.empty() && pending.front() <= now;
   }
 
+  /// Signals known and not taken, arrived or not.
+  int count(int index) const { return static_cast<int>(pending_.at(std::size_t(index)).size()); }
+
  private:
   std::array<std::deque<Cycles>, cn::Machine::kSemaphores> pending_;
 };

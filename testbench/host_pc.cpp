@@ -34,6 +34,7 @@ void HostPc::run() {
 
 void HostPc::fetch_results() {
   results_.fetch([this](cn::MonoAddress from, void* to, std::size_t bytes) {
+    if (checker_ != nullptr) checker_->host_touches_mono(cn::Access::read, {from, bytes});
     wait_until(chip_.host_link.download(from, to, bytes, now()));
   });
   chip_.control_unit.host_signal(HostSemaphores::kResultsFree);

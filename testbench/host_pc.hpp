@@ -3,6 +3,7 @@
 #include <systemc>
 
 #include "model/csx600.hpp"
+#include "model/hazard_checker.hpp"
 #include "testbench/mono_image.hpp"
 #include "testbench/results.hpp"
 
@@ -12,6 +13,9 @@ namespace testbench {
 class HostPc : public sc_core::sc_module {
  public:
   HostPc(const sc_core::sc_module_name& name, model::Csx600& chip, const MonoImage& image, Film& film);
+
+  /// What the host fetches while the firmware runs is told to `checker`, which may be null.
+  void report_reads_to(model::HazardChecker* checker) { checker_ = checker; }
 
   bool finished() const { return finished_; }
   /// The cycle at which the last result was in the host's memory.
@@ -27,6 +31,7 @@ class HostPc : public sc_core::sc_module {
   model::Csx600& chip_;
   const MonoImage& image_;
   ResultReader results_;
+  model::HazardChecker* checker_ = nullptr;
   bool finished_ = false;
   model::Cycles finished_cycle_ = 0;
 };

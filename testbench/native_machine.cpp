@@ -16,7 +16,12 @@ void NativeMachine::sem_signal(cn::Semaphore semaphore) {
     service();
   } else {
     ++semaphores_[std::size_t(semaphore.index)];
+    if (access_observer() != nullptr) access_observer()->signalled(semaphore);
   }
+}
+
+void NativeMachine::timed(bool on) {
+  if (access_observer() != nullptr) access_observer()->timed(on);
 }
 
 void NativeMachine::sem_wait(cn::Semaphore semaphore) {
@@ -24,6 +29,7 @@ void NativeMachine::sem_wait(cn::Semaphore semaphore) {
   if (count == 0)
     throw cn::MachineFault("wait on semaphore '" + semaphore_name(semaphore) + "' that nothing will signal");
   --count;
+  if (access_observer() != nullptr) access_observer()->waited(semaphore);
 }
 
 void NativeMachine::start_transfer(const cn::Transfer& transfer) {

@@ -23,7 +23,7 @@ class NativeMachine : public cn::Machine {
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;
   void issue_mono(std::uint64_t) override {}
-  void timed(bool) override {}
+  void timed(bool on) override;
 
  protected:
   void retire(const char*, const cn::IssueTree&) override {}

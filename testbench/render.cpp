@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "firmware/path_tracer/path_tracer.hpp"
+#include "model/hazard_checker.hpp"
 #include "testbench/error.hpp"
 #include "testbench/host_pc.hpp"
 #include "testbench/host_time.hpp"
@@ -64,15 +65,28 @@ class Run {
   const MonoImage& image() const { return image_; }
   RenderResult& result() { return result_; }
 
+  /// Before anything runs on the machine. Returns the checker, or null when hazards are not to be checked.
+  model::HazardChecker* check_hazards(cn::Machine& machine, model::HazardChecker::Clock clock) {
+    if (!options_.check_hazards) return nullptr;
+    checker_.emplace(machine, std::move(clock));
+    for (const path_tracer::Layout::Region& region : image_.layout.regions)
+      checker_->name_mono(region.name, {region.first, region.bytes});
+    machine.set_access_observer(&*checker_);
+    return &*checker_;
+  }
+
   /// Builds the firmware on a machine and runs it to its end.
   void firmware(cn::Machine& machine) {
-    path_tracer::PathTracer tracer(machine, path_tracer::kernels(options_.level), options_.program,
-                                   image_.layout, options_.work);
+    const path_tracer::Kernels& kernels =
+        checker_ ? path_tracer::observed_kernels() : path_tracer::kernels(options_.level);
+    path_tracer::PathTracer tracer(machine, kernels, options_.program, image_.layout, options_.work);
     tracer.run(std::ref(relay_));
     result_.counts = tracer.counts();
+    if (checker_ && !relay_.interrupted()) checker_->firmware_ends();
   }
 
   RenderResult finish() {
+    if (checker_) checker_->throw_if_found();
     result_.cpu_seconds = timer_.cpu_seconds();
     result_.wall_seconds = timer_.wall_seconds();
     if (relay_.interrupted()) throw RunError("interrupted; nothing was written");
@@ -92,6 +106,7 @@ class Run {
   MonoImage image_;
   ProgressRelay relay_;
   RenderResult result_;
+  std::optional<model::HazardChecker> checker_;
   HostTimer timer_;
 };
 
@@ -103,14 +118,13 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
     Run run(scene, options, progress);
     model::Csx600 chip("csx600", options.chip, options.timing);
     HostPc host("host", chip, run.image(), run.result().film);
+    host.report_reads_to(run.check_hazards(chip.control_unit, [&] { return chip.control_unit.now(); }));
     std::optional<WaveFiles> waves;
     if (options.waves) waves.emplace(*options.waves, chip);
     chip.control_unit.load([&](cn::Machine& machine) { run.firmware(machine); });
     sc_core::sc_start();
-    chip.control_unit.rethrow_failure();
-    if (!host.finished())
-      throw RunError("the chip stopped at cycle " + std::to_string(chip.control_unit.now()) +
-                     " with its firmware waiting for the host");
+    chip.control_unit.require_finished();
+    if (!host.finished()) throw RunError("the firmware has ended, but the host has not");
     run.result().chip = collect_statistics(chip, host.finished_cycle());
     RenderResult result = run.finish();
     if (waves) waves->finish();
@@ -126,8 +140,10 @@ RenderResult render_natively(const Scene& scene, const RenderOptions& options,
     NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, layout.total_bytes);
     std::memcpy(machine.mono(), run.image().bytes.data(), run.image().bytes.size());
     ResultReader results(layout, run.result().film);
+    model::HazardChecker* const checker = run.check_hazards(machine, {});
     machine.on_signal(path_tracer::HostSemaphores::kResultsReady, [&] {
       results.fetch([&](cn::MonoAddress from, void* to, std::size_t bytes) {
+        if (checker != nullptr) checker->host_touches_mono(cn::Access::read, {from, bytes});
         std::memcpy(to, machine.mono() + from, bytes);
       });
       machine.sem_signal(path_tracer::HostSemaphores::kResultsFree);

@@ -22,6 +22,7 @@ struct RenderOptions {
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
   path_tracer::Level level = path_tracer::Level::x86_64_v2;
   std::optional<WaveOptions> waves;  ///< on the chip only
+  bool check_hazards = false;        ///< with kernels built for it, at x86-64-v2 (model/hazard_checker.hpp)
 };
 
 struct RenderResult {

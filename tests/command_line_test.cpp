@@ -97,6 +97,14 @@ TEST_F(CommandLine, StatisticsOfTwoRunsDifferInTheHostOnly) {
   EXPECT_EQ(first.dump(), second.dump());
 }
 
+TEST_F(CommandLine, CheckingHazardsChangesNothingButTheHostsTime) {
+  json plain = statistics({"--n", "3"});
+  json checked = statistics({"--n", "3", "--check-hazards"});
+  plain.erase("host"), checked.erase("host");
+  EXPECT_EQ(checked, plain);
+  EXPECT_EQ(statistics({"--native", "--check-hazards"})["image_sha256"], plain["image_sha256"]);
+}
+
 TEST_F(CommandLine, OptionsReachTheFirmwareAndTheChip) {
   const json plain = statistics({});
   const json other = statistics({"--n", "3", "--buffer", "loads", "--program", "segments", "--seed", "7",

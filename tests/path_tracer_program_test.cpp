@@ -119,6 +119,20 @@ std::vector<Region> bin_regions(const Layout& layout, std::uint64_t slots, const
           region(layout.results[1], slots)};
 }
 
+TEST(LayoutTest, NamesCoverEveryRegion) {
+  ProgramConfig config;
+  const Layout layout = make_layout(37, 5, 96, config);
+  std::vector<Region> expected = scene_regions(layout);
+  for (const Region& r : bin_regions(layout, 96 * std::uint64_t(config.bin_blocks), config))
+    expected.push_back(r);
+  ASSERT_EQ(layout.regions.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(layout.regions[i].first, expected[i].first) << layout.regions[i].name;
+    EXPECT_EQ(layout.regions[i].bytes, expected[i].bytes) << layout.regions[i].name;
+  }
+  EXPECT_STREQ(layout.regions[5].name, "ray bin");
+}
+
 TEST(LayoutTest, RegionsAreAlignedApartAndWithinTheirParts) {
   for (const int triangles : {1, 2, 37}) {
     for (const int num_pes : {8, 96, 1024}) {

@@ -27,6 +27,8 @@ template <class Arguments, void (*program)(const Arguments&)>
   issued.clear();
   strip.poly_words = memory.words();
   strip.num_pes = memory.num_pes();
+  strip.observer = memory.observer();
+  if (!kObservedSram && memory.observer() != nullptr) memory.observer()->kernel_is_silent();
   for (int first_pe = 0; first_pe < memory.num_pes(); first_pe += kStripLanes) {
     const std::uint8_t bits = enabled.strip_bits(first_pe / kStripLanes);
     if (bits == 0) continue;

@@ -37,16 +37,19 @@ Machine::Machine(int num_pes, int poly_bytes_per_pe) : poly_memory_(num_pes, pol
 void Machine::async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source,
                              const LaneMask& enabled) {
   const Transfer transfer{Direction::mono_to_poly, destination, source, enabled, done};
-  check_span(transfer.poly, poly_memory_);
-  check_alignment(transfer, num_pes());
-  start_transfer(transfer);
+  begin_transfer(transfer);
 }
 
 void Machine::async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source,
                              const LaneMask& enabled) {
   const Transfer transfer{Direction::poly_to_mono, source, destination, enabled, done};
+  begin_transfer(transfer);
+}
+
+void Machine::begin_transfer(const Transfer& transfer) {
   check_span(transfer.poly, poly_memory_);
   check_alignment(transfer, num_pes());
+  if (access_observer() != nullptr) access_observer()->transfer_starts(transfer);
   start_transfer(transfer);
 }
 
@@ -66,6 +69,11 @@ int Machine::count(const LaneMask& lanes) {
   return lanes.count();
 }
 
+void Machine::observe_poly(Access access, PolySpan bytes, const LaneMask& enabled) {
+  for (int first_pe = 0; first_pe < num_pes(); first_pe += kStripLanes)
+    access_observer()->touches_poly(access, bytes, first_pe, enabled.strip_bits(first_pe / kStripLanes));
+}
+
 int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
   // A running count by doubling distance: in round r each PE adds the count of the PE 2^r to its left, which
   // takes 2^r steps along the path. The result is known without walking it; tests compare with the walk.
@@ -82,6 +90,11 @@ int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> nu
   node.reached = true;
   node.enabled_lanes = std::uint64_t(num_pes());
 
+  if (access_observer() != nullptr) {
+    access_observer()->kernel_begins("number_ascending");
+    observe_poly(Access::write, {number.offset_bytes, sizeof(std::int32_t)}, chosen);
+    access_observer()->kernel_ends();
+  }
   std::uint64_t* const row = poly_memory_.row(number.offset_bytes / 8 * 8);
   int next = 0;
   for (int pe = 0; pe < num_pes(); ++pe) {
@@ -93,7 +106,23 @@ int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> nu
   return next;
 }
 
+void Machine::observe_swazzle(const char* name, PolyField<std::uint64_t> value, int from_neighbour) {
+  const int first = 0;
+  const int last = num_pes() - 1;
+  LaneMask senders = LaneMask::first(num_pes());
+  LaneMask receivers = senders;
+  senders.set(from_neighbour < 0 ? last : first, false);
+  receivers.set(from_neighbour < 0 ? first : last, false);
+  const PolySpan bytes{value.offset_bytes, sizeof(std::uint64_t)};
+  access_observer()->kernel_begins(name);
+  observe_poly(Access::read, bytes, senders);
+  observe_poly(Access::write, bytes, receivers);
+  access_observer()->kernel_ends();
+}
+
 void Machine::swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour) {
+  const char* const name = from_neighbour < 0 ? "swazzle_up" : "swazzle_down";
+  if (access_observer() != nullptr) observe_swazzle(name, value, from_neighbour);
   std::uint64_t* const row = poly_memory_.row(value.offset_bytes);
   const std::size_t moved_bytes = std::size_t(num_pes() - 1) * sizeof(std::uint64_t);
   if (from_neighbour < 0) {
@@ -107,7 +136,7 @@ void Machine::swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour) {
   node.counts[InstructionClass::sram] = 4;  // 8 bytes read and written
   node.reached = true;
   node.enabled_lanes = std::uint64_t(num_pes());
-  retire(from_neighbour < 0 ? "swazzle_up" : "swazzle_down", issued_);
+  retire(name, issued_);
 }
 
 void Machine::swazzle_up(PolyField<std::uint64_t> value) {

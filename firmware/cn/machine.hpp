@@ -37,7 +37,9 @@ class Machine {
   /// Runs a kernel on the enabled PEs and charges what it issued.
   template <class Arguments>
   void run(const Kernel<Arguments>& kernel, const Arguments& arguments, const LaneMask& enabled) {
+    if (access_observer() != nullptr) access_observer()->kernel_begins(kernel.name);
     kernel.run(arguments, poly_memory_, enabled, issued_);
+    if (access_observer() != nullptr) access_observer()->kernel_ends();
     retire(kernel.name, issued_);
   }
 
@@ -83,10 +85,12 @@ class Machine {
   /// Mono memory as the control unit reads it, through its data cache; valid until the run ends.
   template <class T>
   const T* read_mono(MonoPointer<T> from, std::size_t count = 1) {
+    observe_mono(Access::read, from.address, count * sizeof(T));
     return static_cast<const T*>(read_mono_bytes(from.address, count * sizeof(T)));
   }
   template <class T>
   void write_mono(MonoPointer<T> to, const T& value) {
+    observe_mono(Access::write, to.address, sizeof(T));
     write_mono_bytes(to.address, &value, sizeof(T));
   }
 
@@ -95,13 +99,25 @@ class Machine {
   /// signals.
   virtual void timed(bool on) = 0;
 
+  /// Told of accesses and synchronisation from now on; may be null.
+  void set_access_observer(AccessObserver* observer) { poly_memory_.set_observer(observer); }
+
  protected:
+  /// For implementations, which tell it of waits, signals and timed(); null when nobody looks.
+  AccessObserver* access_observer() const { return poly_memory_.observer(); }
+
   virtual void retire(const char* kernel, const IssueTree& issued) = 0;
   virtual void start_transfer(const Transfer& transfer) = 0;
   virtual const void* read_mono_bytes(MonoAddress from, std::size_t bytes) = 0;
   virtual void write_mono_bytes(MonoAddress to, const void* bytes, std::size_t size) = 0;
 
  private:
+  void observe_mono(Access access, MonoAddress first, std::size_t bytes) {
+    if (access_observer() != nullptr) access_observer()->touches_mono(access, first, bytes);
+  }
+  void observe_poly(Access access, PolySpan bytes, const LaneMask& enabled);
+  void begin_transfer(const Transfer& transfer);
+  void observe_swazzle(const char* name, PolyField<std::uint64_t> value, int from_neighbour);
   void swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour);
 
   PolyMemory poly_memory_;

@@ -7,6 +7,8 @@
 
 namespace cn {
 
+class AccessObserver;
+
 /// A piece of every PE's SRAM, at the same address in each.
 struct PolySpan {
   int offset_bytes = 0;
@@ -50,6 +52,10 @@ class PolyMemory {
   const std::vector<Buffer>& buffers() const { return buffers_; }
   std::string map() const;
 
+  /// Told of every access from now on; may be null.
+  void set_observer(AccessObserver* observer) { observer_ = observer; }
+  AccessObserver* observer() const { return observer_; }
+
   std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(strips_.data()); }
   const std::uint64_t* words() const { return reinterpret_cast<const std::uint64_t*>(strips_.data()); }
 
@@ -68,6 +74,7 @@ class PolyMemory {
     std::uint64_t word[8];
   };
   std::vector<StripOfWords> strips_;
+  AccessObserver* observer_ = nullptr;
 };
 
 }  // namespace cn

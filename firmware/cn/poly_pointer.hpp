@@ -14,6 +14,7 @@ struct PolyField {
 
   poly<T> read() const {
     issue(InstructionClass::sram, kWords);
+    observe_sram(Access::read, {offset_bytes, kBytes});
     const void* const row = address();
     if constexpr (sizeof(T) == 8) {
       return poly<T>(load_lanes<Lane>(row));
@@ -36,6 +37,7 @@ struct PolyField {
 
   void write(const poly<T>& value) const {
     issue(InstructionClass::sram, kWords);
+    observe_sram(Access::write, {offset_bytes, kBytes});
     void* const row = address();
     if constexpr (sizeof(T) == 8) {
       store_lanes(row, select_lanes(strip.enabled, value.lanes(), load_lanes<Lane>(row)));
@@ -59,6 +61,7 @@ struct PolyField {
 
  private:
   using Lane = typename poly<T>::Lane;
+  static constexpr int kBytes = static_cast<int>(sizeof(T));
   static constexpr std::uint64_t kWords = (sizeof(T) + 3) / 4;
 
   int shift() const { return static_cast<int>(8 * (unsigned(offset_bytes) % 8)); }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "firmware/cn/access_observer.hpp"
 #include "firmware/cn/instruction.hpp"
 #include "firmware/cn/mask_lanes.hpp"
 
@@ -12,6 +13,14 @@ namespace cn {
 struct StripCounts {
   unsigned long long by_class[kInstructionClasses] = {};
 };
+
+/// Whether poly code is built to report its SRAM accesses. A build of its own, because a test in every access
+/// that is hardly ever true was 4 % of a render's instructions: registers are spilled around the call.
+#if defined(CN_OBSERVED_SRAM)
+inline constexpr bool kObservedSram = true;
+#else
+inline constexpr bool kObservedSram = false;
+#endif
 
 /// The strip of PEs that is executing. Cn has no syntax for the machine a statement runs on: enable bits, PE
 /// number and the instruction stream are ambient there, and so they are here. Set only by run_strips
@@ -24,12 +33,20 @@ struct Strip {
   std::uint64_t* poly_words = nullptr;  ///< word w of PE p is at [w * num_pes + p]
   int num_pes = 0;
   int first_pe = 0;
+  AccessObserver* observer = nullptr;  ///< of the SRAM; null when nobody looks
 };
 
 inline thread_local Strip strip;
 
 inline void issue(InstructionClass instruction, std::uint64_t times = 1) {
   strip.issued.by_class[static_cast<std::size_t>(instruction)] += times;
+}
+
+/// Tells the observer, if there is one, that the enabled PEs touch these bytes of their SRAM.
+inline void observe_sram(Access access, PolySpan bytes) {
+  if constexpr (kObservedSram)
+    if (strip.observer != nullptr)
+      strip.observer->touches_poly(access, bytes, strip.first_pe, mask_bits(strip.enabled));
 }
 
 /// Books what was issued since the last flush; only the first strip to pass a node counts its instructions.

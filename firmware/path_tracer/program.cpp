@@ -6,9 +6,12 @@ namespace {
 /// Hands out mono memory from address 0 upwards, in whole DDR packets.
 class MonoAllocator {
  public:
+  explicit MonoAllocator(std::vector<Layout::Region>& regions) : regions_(regions) {}
+
   template <class T>
-  cn::MonoPointer<T> take(std::uint64_t count) {
+  cn::MonoPointer<T> take(const char* name, std::uint64_t count) {
     const cn::MonoPointer<T> start{next_};
+    regions_.push_back({name, next_, count * sizeof(T)});
     next_ = (next_ + count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
     return start;
   }
@@ -16,6 +19,7 @@ class MonoAllocator {
 
  private:
   static constexpr std::uint64_t kAlignment = 64;
+  std::vector<Layout::Region>& regions_;
   std::uint64_t next_ = 0;
 };
 
@@ -46,27 +50,27 @@ void validate(const ProgramConfig& config) {
 
 Layout make_layout(int triangle_count, int light_count, int num_pes, const ProgramConfig& config) {
   const auto slots = std::uint64_t(num_pes) * std::uint64_t(config.bin_blocks);
-  MonoAllocator memory;
   Layout layout;
+  MonoAllocator memory(layout.regions);
   layout.triangle_count = triangle_count;
   layout.light_count = light_count;
-  layout.camera = memory.take<CameraRecord>(1);
-  layout.triangles = memory.take<TriangleRecord>(std::uint64_t(triangle_count));
-  layout.surfaces = memory.take<SurfaceRecord>(std::uint64_t(triangle_count));
-  layout.lights = memory.take<LightRecord>(std::uint64_t(light_count));
-  layout.light_cdf = memory.take<double>(std::uint64_t(light_count));
+  layout.camera = memory.take<CameraRecord>("camera", 1);
+  layout.triangles = memory.take<TriangleRecord>("triangles", std::uint64_t(triangle_count));
+  layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(triangle_count));
+  layout.lights = memory.take<LightRecord>("lights", std::uint64_t(light_count));
+  layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(light_count));
   layout.scene_bytes = memory.used_bytes();
-  layout.ray_bin = memory.take<RayRecord>(slots);
-  layout.intersection_bin = memory.take<HitRecord>(slots);
-  layout.scatter_bin = memory.take<ScatterRecord>(slots);
-  layout.lighting_bin = memory.take<LightingRecord>(slots);
-  layout.direct_light_bin = memory.take<DirectLightRecord>(slots);
-  layout.path_bin = memory.take<PathRecord>(slots);
-  layout.vertices = memory.take<VertexRecord>(slots * std::uint64_t(config.slot_vertices));
-  layout.folds = memory.take<FoldRecord>(slots);
-  layout.finished = memory.take<FinishedRecord>(slots);
-  for (auto& header : layout.results_header) header = memory.take<ResultsHeader>(1);
-  for (auto& half : layout.results) half = memory.take<RadianceRecord>(slots);
+  layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
+  layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots);
+  layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots);
+  layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots);
+  layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);
+  layout.path_bin = memory.take<PathRecord>("path bin", slots);
+  layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
+  layout.folds = memory.take<FoldRecord>("folds", slots);
+  layout.finished = memory.take<FinishedRecord>("finished paths", slots);
+  for (auto& header : layout.results_header) header = memory.take<ResultsHeader>("results header", 1);
+  for (auto& half : layout.results) half = memory.take<RadianceRecord>("results", slots);
   layout.total_bytes = memory.used_bytes();
   return layout;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "firmware/cn/machine.hpp"
 #include "firmware/path_tracer/records.hpp"
@@ -101,6 +102,14 @@ struct Layout {
 
   std::uint64_t scene_bytes = 0;  ///< the host writes [0, scene_bytes)
   std::uint64_t total_bytes = 0;
+
+  /// All of the above by name, for messages.
+  struct Region {
+    const char* name;
+    cn::MonoAddress first;
+    std::uint64_t bytes;
+  };
+  std::vector<Region> regions;
 };
 
 Layout make_layout(int triangle_count, int light_count, int num_pes, const ProgramConfig& config);

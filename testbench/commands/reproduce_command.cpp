@@ -30,6 +30,7 @@ struct ReproduceCommand {
   TimingOption timing;
   LevelOption level;
   int samples = 4;
+  bool check_hazards = false;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool image = false;
   std::string json;
@@ -139,6 +140,7 @@ RenderOptions ReproduceCommand::make_options() const {
   options.level = level.level();
   options.program = paper_program();
   options.work.samples = samples;
+  options.check_hazards = check_hazards;
   return options;
 }
 
@@ -178,6 +180,9 @@ void add_reproduce_command(CLI::App& app) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command.add_flag("--image", state->image, "Render the paper's image instead and compare its time");
+  command.add_flag(
+      "--check-hazards", state->check_hazards,
+      "Stop when the firmware uses what a transfer may still read or write (kernels at level v2)");
   command.add_option("--json", state->json, "Also write the cells to this file");
   command.callback([state] { state->run(); });
 }

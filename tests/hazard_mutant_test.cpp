@@ -1,0 +1,63 @@
+// Linked with one source of the firmware broken (add_hazard_mutant in CMakeLists.txt): the hazard checker
+// must stop it.
+
+#include <set>
+#include <sstream>
+
+#include "tests/support/checked_firmware.hpp"
+#include "tests/support/hazards.hpp"
+
+namespace {
+
+using path_tracer::Program;
+using path_tracer::ProgramConfig;
+
+std::vector<std::string> expected_parts() {
+  std::vector<std::string> parts{"hazard", "kernel '", "request ", " bytes, ", "semaphore '"};
+  std::istringstream text(MUTANT_EXPECTED);
+  for (std::string part; std::getline(text, part, '|');) parts.push_back(part);
+  return parts;
+}
+
+bool has_all(const std::string& message, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    if (message.find(part) == std::string::npos) return false;
+  return true;
+}
+
+/// Empty when it came to its end, or was refused before it began.
+std::string fault_of(const testbench::Scene& scene, Program program, int n, int blocks) {
+  try {
+    return test_support::run_checked(scene, test_support::checked_program(program, n, blocks), 8, 1).fault;
+  } catch (const path_tracer::ProgramError&) {
+    return "";
+  }
+}
+
+/// Whether a configuration can do without the missing line differs: nothing is ahead at n = 0, with many
+/// blocks no two steps on one meet. Where one cannot, the message must say what is expected.
+TEST(Mutant, IsStopped) {
+  const std::vector<std::string> parts = expected_parts();
+  std::set<std::string> stopped;
+  std::set<std::string> as_expected;
+  for (const testbench::Scene& scene : {test_support::small_scene(), test_support::open_scene()}) {
+    for (const Program program : {Program::segments, Program::direct, Program::full}) {
+      for (const int n : {0, 1, 3, 8}) {
+        for (const int blocks : {1, 2, 4, 8}) {
+          const std::string fault = fault_of(scene, program, n, blocks);
+          if (fault.empty()) continue;
+          test_support::expect_one_line(fault);
+          stopped.insert(fault);
+          if (has_all(fault, parts)) as_expected.insert(fault);
+        }
+      }
+    }
+  }
+  EXPECT_FALSE(stopped.empty()) << MUTANT << " was never noticed";
+  EXPECT_FALSE(as_expected.empty()) << MUTANT << " was not noticed as " << MUTANT_EXPECTED << ", but as "
+                                    << (stopped.empty() ? "nothing" : *stopped.begin());
+  std::printf("%zu different messages, %zu as expected", stopped.size(), as_expected.size());
+  std::printf(", such as: %s\n", as_expected.empty() ? "none" : as_expected.begin()->c_str());
+}
+
+}  // namespace

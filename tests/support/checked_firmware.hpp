@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "model/hazard_checker.hpp"
+#include "testbench/native_machine.hpp"
+#include "testbench/scene/scene.hpp"
+
+namespace test_support {
+
+/// How a run of the firmware is broken on purpose.
+struct Mutation {
+  int dropped_wait = -1;  ///< this wait for a transfer returns at once and takes no signal, the first is 0
+  std::function<void(path_tracer::Layout&)> layout = [](path_tracer::Layout&) {};
+};
+
+struct CheckedRun {
+  std::string fault;  ///< empty when the firmware came to its end
+  /// Numbers of the waits for transfers, in timed work, that the firmware cannot do without: up to the last
+  /// on a semaphore that ends a transfer with data. What comes after has nothing to wait for.
+  std::vector<int> waits;
+  std::uint64_t requests = 0;  ///< that moved data
+};
+
+/// The whole path tracer, natively, under the hazard checker.
+CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::ProgramConfig& config, int num_pes,
+                       int samples = 2, const Mutation& mutation = {});
+
+/// Twelve triangles that all emit, and rays that miss nothing; 6 x 4 pixels.
+testbench::Scene small_scene();
+/// Most of its paths end at once, so that radiance has several blocks of them a pass; 9 x 7 pixels.
+testbench::Scene open_scene();
+
+inline path_tracer::ProgramConfig checked_program(path_tracer::Program program, int n, int bin_blocks = 4) {
+  path_tracer::ProgramConfig config;
+  config.program = program;
+  config.n = n;
+  config.bin_blocks = bin_blocks;
+  config.slot_vertices = 4;  // many paths are folded
+  config.max_survival = 0.9;
+  return config;
+}
+
+}  // namespace test_support

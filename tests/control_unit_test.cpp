@@ -87,6 +87,14 @@ TEST_F(ControlUnit, MonoInstructionsOutsideKernelsTakeTimeOfTheirOwn) {
   EXPECT_EQ(statistics().mono_instructions, 7u);
 }
 
+TEST_F(ControlUnit, MonoInstructionsAreScaledByTheCodeQualityToo) {
+  model::ChipConfig config = priced_chip();
+  config.poly.code_quality_factor = 1.5;
+  build(config);
+  run_well([](Machine& machine) { machine.issue_mono(7); });
+  EXPECT_EQ(spent(CycleCause::mono), 21u);
+}
+
 // A line that is not in the cache: 6 cycles to the DDR, 30 to a page miss (20 to a hit), 4 for 32 bytes over
 // the link, 6 back, and cache_miss_cycles = 25.
 constexpr Cycles kPageMissLine = 6 + 30 + 4 + 6 + 25;
@@ -324,8 +332,9 @@ TEST_F(ControlUnit, FaultsOfTransfersReachTheCaller) {
 TEST(CycleCauses, HaveNamesOfTheirOwn) {
   std::vector<std::string> names;
   for (int i = 0; i < model::kCycleCauses; ++i) names.push_back(model::cycle_cause_name(CycleCause(i)));
-  EXPECT_EQ(names, (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore", "wait_load",
-                                             "wait_save", "wait_pio_queue", "wait_host"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore", "transfer_call",
+                                      "wait_load", "wait_save", "wait_pio_queue", "wait_host"}));
 }
 
 }  // namespace

@@ -210,11 +210,14 @@ TEST(DirectLight, TheBackOfTheLightIsDark) {
 TEST(DirectLight, TheBackOfTheLightLightsNothing) {
   for (const Program program : {Program::segments, Program::full}) {
     const Scene scene = test_support::plane_over_light(kValues, {24, 16});
-    const RenderResult result = render_natively(scene, render_options(program, 64));
-    EXPECT_EQ(result.film.rejected_samples(), 0u);
-    for (const double value : result.film.rgb()) ASSERT_EQ(value, 0.0);
-    if (program == Program::full) {
-      EXPECT_EQ(result.counts.shadow_rays, 24u * 16u * 64u);
+    for (const bool cull : {false, true}) {
+      testbench::RenderOptions options = render_options(program, 64);
+      options.program.cull_shadow_rays = cull;
+      const RenderResult result = render_natively(scene, options);
+      EXPECT_EQ(result.film.rejected_samples(), 0u);
+      for (const double value : result.film.rgb()) ASSERT_EQ(value, 0.0);
+      const bool casts = program == Program::full && !cull;
+      EXPECT_EQ(result.counts.shadow_rays, casts ? 24u * 16u * 64u : 0u);
     }
   }
 }

@@ -168,7 +168,7 @@ TEST(Furnace, RouletteBelowTheAlbedoKeepsTheMean) {
   EXPECT_NEAR(sum / count, 1.0, test_support::normal_threshold(test_support::kFalseAlarm) * deviation);
 }
 
-TEST(Furnace, ShortSlotsFoldToTheSameBits) {
+TEST(Furnace, ShortSlotsFoldToTheSameImage) {
   for (const Program program : {Program::segments, Program::full}) {
     RenderOptions options = render_options(program, 8);
     options.program.roulette_start = 9;  // weights other than 1 before and after a fold
@@ -178,7 +178,10 @@ TEST(Furnace, ShortSlotsFoldToTheSameBits) {
     const RenderResult short_slots = render_natively(scene, options);
     EXPECT_GT(short_slots.counts.folds, short_slots.counts.paths);
     EXPECT_LT(long_slots.counts.folds, short_slots.counts.folds);
-    EXPECT_EQ(long_slots.film.sha256(), short_slots.film.sha256());
+    // Not the same bits: a path that is cut is rounded elsewhere.
+    const std::vector<double> expected = long_slots.film.rgb();
+    const std::vector<double> found = short_slots.film.rgb();
+    for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found[i], expected[i], 1e-12 * expected[i]);
   }
 }
 

@@ -79,14 +79,15 @@ TEST(MonoImage, LightsAreChosenByTheirPower) {
   EXPECT_EQ(vector(dim.vertex), glm::dvec3(0, 0, 0));
   EXPECT_EQ(vector(dim.edge1), glm::dvec3(2, 0, 0));
   EXPECT_EQ(vector(dim.edge2), glm::dvec3(0, 2, 0));
-  EXPECT_EQ(vector(dim.normal), glm::dvec3(0, 0, 1));
   EXPECT_EQ(dim.face, 0);
-  EXPECT_NEAR(dim.emission_over_pdf.x, 1.0 / (1.0 / 3.0 / 2.0), 1e-12);
+  const auto expect_normal_over_pdf = [](const LightRecord& light, const glm::dvec3& expected) {
+    EXPECT_LT(glm::length(vector(light.normal_over_pdf) - expected), 1e-14);
+  };
+  expect_normal_over_pdf(dim, {0, 0, 2.0 / (6.0 / 18.0)});  // area / probability
   const auto bright = record(image, image.layout.lights, 1);
   EXPECT_EQ(vector(bright.vertex), glm::dvec3(0, 7, 0));
   EXPECT_EQ(bright.face, 2);
-  for (int channel = 0; channel < 3; ++channel)
-    EXPECT_NEAR(vector(bright.emission_over_pdf)[channel], (3.0 + channel) / (2.0 / 3.0 / 1.0), 1e-12);
+  expect_normal_over_pdf(bright, {0, 1.0 / (12.0 / 18.0), 0});
 }
 
 /// A square light of two triangles, a lone triangle, and a parallelogram that is no rectangle.
@@ -220,7 +221,7 @@ TEST(MonoImage, PiecesLieOneBehindTheOther) {
       {layout.ray_bin.address, kSlots * sizeof(path_tracer::RayRecord)},
       {layout.intersection_bin.address, kSlots * sizeof(path_tracer::HitRecord)},
       {layout.scatter_bin.address, kSlots * sizeof(path_tracer::ScatterRecord)},
-      {layout.shadow_bin.address, kSlots * sizeof(path_tracer::ShadowRecord)},
+      {layout.lighting_bin.address, kSlots * sizeof(path_tracer::LightingRecord)},
       {layout.direct_light_bin.address, kSlots * sizeof(path_tracer::DirectLightRecord)},
       {layout.path_bin.address, kSlots * sizeof(path_tracer::PathRecord)},
       {layout.vertices.address, 12 * kSlots * sizeof(path_tracer::VertexRecord)},

@@ -107,7 +107,7 @@ std::vector<Region> bin_regions(const Layout& layout, std::uint64_t slots, const
   return {region(layout.ray_bin, slots),
           region(layout.intersection_bin, slots),
           region(layout.scatter_bin, slots),
-          region(layout.shadow_bin, slots),
+          region(layout.lighting_bin, slots),
           region(layout.direct_light_bin, slots),
           region(layout.path_bin, slots),
           region(layout.vertices, slots * std::uint64_t(config.slot_vertices)),
@@ -206,9 +206,11 @@ TEST(PolySramBudget, BuffersHoldTheLargestStage) {
     }
     return found;
   };
-  EXPECT_EQ(sizes(Program::segments), std::pair(24 + 104 + 24, 48 + 24 + 56 + 24 + 16));
-  EXPECT_EQ(sizes(Program::direct), std::pair(96 + 128, 104 + 96));
-  EXPECT_EQ(sizes(Program::full), std::pair(24 + 48 + 4 * 48, 104 + 96));
+  // Bytes of records: ray 56, hit 32, surface 80, path 40, light 104, scatter 104, lighting 32, direct light
+  // 24, vertex 48, finished path 24, two addresses 16.
+  EXPECT_EQ(sizes(Program::segments), std::pair(40 + 104 + 24, 48 + 40 + 56 + 24 + 16)) << "path bin";
+  for (const Program program : {Program::direct, Program::full})
+    EXPECT_EQ(sizes(program), std::pair(32 + 80 + 40 + 104, 104 + 56 + 32)) << "intersection bin";
 }
 
 TEST(PolySramBudget, BinsThatAreTooLongNameTheBuffer) {

@@ -28,7 +28,7 @@ class TransferRingTest : public testing::Test {
   Calls take_calls() { return std::exchange(machine.calls, {}); }
 
   test_support::LateMachine machine{8, 1024, 4096};
-  TransferRing ring{machine, "load", kBuffers, 16};
+  TransferRing ring{machine, "load", {kBuffers, 16, false}};
 };
 
 TEST_F(TransferRingTest, BuffersAreNamedAndTakenInTurn) {
@@ -136,15 +136,69 @@ TEST_F(TransferRingTest, PipelineKeepsAsManyStepsUnderWayAsThereAreBuffers) {
   EXPECT_EQ(machine.under_way(), 0u);
 }
 
+class SynchronousRing : public TransferRingTest {
+ protected:
+  static constexpr std::uint64_t kStep = 7;
+
+  void load_at_once() {
+    synchronous.copy_m2p(kStep, 2, synchronous.buffer(kStep), MonoPlaces::array(64 * kStep, 0),
+                         LaneMask::first(8));
+  }
+  void save_at_once() {
+    synchronous.copy_p2m(kStep, 2, MonoPlaces::array(64 * kStep, 16), synchronous.buffer(kStep),
+                         LaneMask::first(8));
+  }
+  std::uint64_t& word() { return machine.poly_memory().row(synchronous.buffer(kStep).offset_bytes)[3]; }
+
+  TransferRing synchronous{machine, "direct", {1, 16, true}};
+};
+
+TEST_F(SynchronousRing, EachCopyIsOverBeforeTheNextInstruction) {
+  for (int i = 0; i < 4096; ++i) machine.mono()[i] = static_cast<std::uint8_t>(i / 64);
+  load_at_once();
+  EXPECT_EQ(take_calls(), (Calls{"m2p direct 0", "wait direct 0"}));
+  EXPECT_EQ(machine.under_way(), 0u);
+  EXPECT_EQ(word(), 0x0707070707070707u);
+
+  word() = 0x1122334455667788u;
+  save_at_once();
+  save_at_once();
+  EXPECT_EQ(take_calls(), (Calls{"p2m direct 0", "wait direct 0", "p2m direct 0", "wait direct 0"}));
+  EXPECT_EQ(machine.under_way(), 0u);
+  EXPECT_EQ(machine.mono()[64 * kStep + 3 * 16], 0x88);
+}
+
+TEST_F(SynchronousRing, LeavesNothingToWaitFor) {
+  load_at_once();
+  save_at_once();
+  take_calls();
+  synchronous.wait(kStep);
+  synchronous.wait_block(2);
+  synchronous.wait_until(100);
+  EXPECT_EQ(take_calls(), Calls{});
+}
+
+TEST_F(SynchronousRing, WaitsForItsOwnCopyOnly) {
+  load(0, 0);
+  load_at_once();
+  EXPECT_EQ(machine.under_way(), 1u) << "of the ring with buffers";
+  EXPECT_EQ(take_calls(), (Calls{"m2p load 0", "m2p direct 0", "wait direct 0"}));
+}
+
+TEST_F(SynchronousRing, PaysForTheRequestAndTheWait) {
+  load_at_once();
+  EXPECT_EQ(machine.mono_instructions, 12u + 3u);
+}
+
 TEST_F(TransferRingTest, RunsOutOfPolySramOrSemaphoresByName) {
   try {
-    TransferRing large(machine, "save", 2, 700);
+    TransferRing large(machine, "save", {2, 700, false});
     FAIL();
   } catch (const cn::PolyMemoryOverflow& overflow) {
     EXPECT_NE(std::string(overflow.what()).find("'save 1'"), std::string::npos) << overflow.what();
   }
   try {
-    TransferRing many(machine, "spare", 100, 0);
+    TransferRing many(machine, "spare", {100, 0, false});
     FAIL();
   } catch (const cn::MachineFault& fault) {
     EXPECT_NE(std::string(fault.what()).find("'spare 60'"), std::string::npos) << fault.what();

@@ -103,17 +103,6 @@ class TriangleTest : public test_support::StripFixture {
     return nearest({ray}, triangles, left_face).triangle[0];
   }
 
-  bool blocked(const Ray& ray, const std::vector<TriangleRecord>& triangles, int left_face = kNoFace,
-               int reached_face = kNoFace) {
-    const std::vector<Ray> rays = on_all_pes({ray});
-    PerPe<char> found = per_pe<char>();
-    run([&] {
-      store(found, path_tracer::is_blocked(load3(rays, &Ray::origin), load3(rays, &Ray::direction), left_face,
-                                           reached_face, triangles.data(), int(triangles.size())));
-    });
-    return found[0] != 0;
-  }
-
   double uniform(double low, double high) {
     return low + (high - low) * (static_cast<double>(random_() >> 11) * 0x1p-53);
   }
@@ -169,29 +158,43 @@ TEST_F(TriangleTest, AgreesWithTheExactNearestHitAtAnyScale) {
   }
 }
 
-TEST_F(TriangleTest, AgreesWithTheExactBlockersAtAnyScale) {
+/// A shadow ray is as long as the way to its light: what it hits is its light unless something is nearer.
+TEST_F(TriangleTest, ShadowRaysHitTheLightUnlessTheExactBlockersAreNearer) {
+  constexpr int kLight = 3;
   for (const double scale : {1e-8, 1.0, 1e8}) {
     SCOPED_TRACE(scale);
     int counts[2] = {0, 0};
     for (int round = 0; round < 600; ++round) {
       std::vector<TriangleRecord> triangles;
-      for (int i = 0; i < 3; ++i) triangles.push_back(triangle(point(scale), point(scale), point(scale), i));
+      for (int i = 0; i < 4; ++i) triangles.push_back(triangle(point(scale), point(scale), point(scale), i));
+      const TriangleRecord& light = triangles[kLight];
+      const double u = uniform(0.01, 0.49);
+      const double v = uniform(0.01, 0.49);
       const Vector from = point(scale);
-      const Ray ray{from, point(scale) - from};
-      bool expected = false;
-      bool too_close_to_call = false;
-      for (const TriangleRecord& t : triangles) {
-        const Meeting meeting = meet(ray, t);
+      const Ray ray{from, light.vertex + light.edge1 * u + light.edge2 * v - from};
+      bool blocked = false;
+      bool too_close_to_call = std::abs(meet(ray, light).margin) < 1e-9;
+      for (int i = 0; i < kLight; ++i) {
+        const Meeting meeting = meet(ray, triangles[std::size_t(i)]);
         const long double margin = std::min(meeting.margin, 1 - meeting.distance);
         too_close_to_call |= std::abs(margin) < 1e-9;
-        expected |= margin > 0;
+        blocked |= margin > 0;
       }
       if (too_close_to_call) continue;
-      ASSERT_EQ(blocked(ray, triangles), expected);
-      ++counts[expected];
+      ASSERT_EQ(nearest_one(ray, triangles) == kLight, !blocked);
+      ++counts[blocked];
     }
     EXPECT_GT(counts[0], 100);
     EXPECT_GT(counts[1], 50);
+  }
+}
+
+/// The distance is in lengths of the direction.
+TEST_F(TriangleTest, DirectionsNeedNotBeOfUnitLength) {
+  for (const double length : {0x1p-30, 0.5, 3.0, 0x1p30}) {
+    const Hits hits = nearest({{{0.25, 0.25, 2}, {0, 0, -length}}}, {kUnit});
+    EXPECT_EQ(hits.triangle[0], 0) << length;
+    EXPECT_EQ(hits.distance[0], 2 / length);
   }
 }
 
@@ -231,7 +234,6 @@ TEST_F(TriangleTest, ParallelRaysMiss) {
     for (const Vector& origin :
          {Vector{-2, 0.25, 0}, {0.25, 0.25, 0}, {0, 0, 0}, {0.25, 2, 0}, {0.25, 0.25, 1}, {0, 0, -1}}) {
       EXPECT_EQ(nearest_one({origin, direction}, {kUnit}), -1);
-      EXPECT_FALSE(blocked({origin, direction}, {kUnit}));
       // Nor do they hide what is met.
       const TriangleRecord wall =
           triangle({origin + direction * 4 + Vector{-9, -9, -9}}, origin + direction * 4 + Vector{9, -9, 9},
@@ -260,7 +262,6 @@ TEST_F(TriangleTest, TrianglesWithoutAreaAreNeverHit) {
   for (std::size_t pe = 0; pe < rays.size(); ++pe) {
     EXPECT_EQ(nothing.triangle[pe], -1) << pe;
     EXPECT_EQ(wall.triangle[pe], rays[pe].direction.z < 0 ? 4 : -1) << pe;
-    EXPECT_FALSE(pe < 8 && blocked(rays[pe], degenerate)) << pe;
   }
 }
 
@@ -272,25 +273,6 @@ TEST_F(TriangleTest, ARayIgnoresTheFaceThatItLeaves) {
   EXPECT_EQ(nearest_one(ray, triangles), 0);
   EXPECT_EQ(nearest_one(ray, triangles, 5), 2);
   EXPECT_EQ(nearest_one(ray, triangles, 6), 0);
-  const Ray segment{{0.25, 0.25, 1}, {0, 0, -10}};
-  EXPECT_TRUE(blocked(segment, triangles));
-  EXPECT_TRUE(blocked(segment, triangles, 5));
-  EXPECT_TRUE(blocked(segment, triangles, kNoFace, 6));
-  EXPECT_FALSE(blocked(segment, triangles, 5, 6));
-  EXPECT_FALSE(blocked(segment, triangles, 6, 5));
-}
-
-TEST_F(TriangleTest, BlockersLieBetweenTheEndPoints) {
-  const auto from = [](double z, double to_z) { return Ray{{0.25, 0.25, z}, {0, 0, to_z - z}}; };
-  EXPECT_TRUE(blocked(from(1, -1), {kUnit}));
-  EXPECT_TRUE(blocked(from(-1, 1), {kUnit})) << "from behind";
-  EXPECT_FALSE(blocked(from(2, 1), {kUnit}));
-  EXPECT_FALSE(blocked(from(-1, -2), {kUnit}));
-  EXPECT_FALSE(blocked(from(1, 0), {kUnit})) << "ends on it";
-  EXPECT_FALSE(blocked(from(0, 1), {kUnit})) << "starts on it";
-  EXPECT_TRUE(blocked(from(1, -0x1p-40), {kUnit}));
-  EXPECT_TRUE(blocked(from(0x1p-40, -1), {kUnit}));
-  EXPECT_FALSE(blocked({{2, 2, 1}, {0, 0, -2}}, {kUnit})) << "passes by";
 }
 
 TEST_F(TriangleTest, NanNeverWins) {
@@ -304,7 +286,6 @@ TEST_F(TriangleTest, NanNeverWins) {
         broken.*member.*component = bad;
         EXPECT_EQ(nearest_one(good, {broken, wall}), 1) << bad;
         EXPECT_EQ(nearest_one(good, {wall, broken}), 0) << bad;
-        EXPECT_FALSE(blocked({good.origin, good.direction * 1.5}, {broken})) << bad;
       }
       for (Vector Ray::*member : {&Ray::origin, &Ray::direction}) {
         Ray broken = good;
@@ -313,7 +294,6 @@ TEST_F(TriangleTest, NanNeverWins) {
         EXPECT_EQ(hits.triangle[0], 0);
         EXPECT_EQ(hits.triangle[1], -1) << bad;
         EXPECT_EQ(hits.triangle[2], 0);
-        EXPECT_FALSE(blocked(broken, {kUnit, wall})) << bad;
       }
     }
   }

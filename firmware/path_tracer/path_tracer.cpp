@@ -163,13 +163,19 @@ void PathTracer::after_path_step(const Step& step) {
 void PathTracer::plan_radiance_of_pass() {
   results_records_ = path_stage_.finished_count();
   radiance_stage_.fold().set_results(layout_.results[results_half_]);
-  const int width = machine_.num_pes();
-  for (int block = 0; block * width < results_records_; ++block) {
-    radiance_stage_.begin_block(block, std::min(width, results_records_ - block * width));
-    plan_radiance(radiance_stage_.list(), block);
-    ++list_steps_left_;
-  }
+  list_steps_left_ = (results_records_ + machine_.num_pes() - 1) / machine_.num_pes();
+  next_list_block_ = 0;
+  for (int i = 0; i < RadianceStage::kBlocksUnderWay; ++i) plan_list_step();
   ray_steps_before_radiance_ = 1;  // hides the saves of the last path step
+}
+
+/// Of the next block of the list, if there is one.
+void PathTracer::plan_list_step() {
+  const int first = next_list_block_ * machine_.num_pes();
+  if (first >= results_records_) return;
+  radiance_stage_.begin_block(next_list_block_, std::min(machine_.num_pes(), results_records_ - first));
+  plan_radiance(radiance_stage_.list(), next_list_block_);
+  ++next_list_block_;
 }
 
 /// The loads of radiance steps take place under the ray step, the steps themselves follow it.
@@ -202,6 +208,7 @@ void PathTracer::run_radiance_step() {
     after_list_step(step.block);
   } else {
     last_result_step_ = step.number;
+    if (radiance_stage_.fold().is_last(step.block)) plan_list_step();
   }
 }
 

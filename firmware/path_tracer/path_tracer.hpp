@@ -61,6 +61,7 @@ class PathTracer {
   void after_path_step(const Step& step);
   void plan_pass();
   void plan_radiance_of_pass();
+  void plan_list_step();
   void issue_radiance_loads();
   void run_radiance_step();
   void run_radiance_to_end();
@@ -97,6 +98,7 @@ class PathTracer {
   Steps radiance_loading_;
   std::uint64_t next_radiance_step_ = 0;
   int list_steps_left_ = 0;  ///< each will plan fold steps
+  int next_list_block_ = 0;  ///< the first that has not been planned
   int ray_steps_before_radiance_ = 0;
 
   int results_half_ = 0;

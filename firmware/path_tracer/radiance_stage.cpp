@@ -4,12 +4,11 @@ namespace path_tracer {
 
 RadianceStage::RadianceStage(const StageContext& context)
     : loads_per_path_(context.config.slot_vertices / kVerticesPerLoad),
-      blocks_(std::size_t(context.config.bin_blocks)),
       list_(context, blocks_),
       fold_(context, blocks_) {
   cn::PolyMemory& memory = context.machine.poly_memory();
   constexpr int kPathBytes = 2 * sizeof(MonoAddress) + 4 * sizeof(std::int32_t);
-  BufferCutter paths(memory.allocate("finished paths", kPathBytes * context.config.bin_blocks));
+  BufferCutter paths(memory.allocate("finished paths", kPathBytes * kBlocksUnderWay));
   for (ListBlock& block : blocks_) {
     block.path.vertex_place = paths.take_place();
     block.path.fold_place = paths.take_place();
@@ -23,12 +22,11 @@ RadianceStage::RadianceStage(const StageContext& context)
 
 void RadianceStage::ListStage::load(std::uint64_t step, int block) {
   const PolyPointer<FinishedRecord> entry(context_.loads.buffer(step));
-  load_block(step, block, entry, context_.layout.finished,
-             LaneMask::first(blocks_[std::size_t(block)].entries));
+  load_block(step, block, entry, context_.layout.finished, LaneMask::first(blocks_[block].entries));
 }
 
 void RadianceStage::ListStage::process(std::uint64_t step, int block) {
-  ListBlock& list = blocks_[std::size_t(block)];
+  ListBlock& list = blocks_[block];
   list.needs_load.assign(list.needs_load.size(), LaneMask{});
   list.folded = LaneMask{};
   list.flushed = LaneMask{};
@@ -50,7 +48,7 @@ void RadianceStage::ListStage::process(std::uint64_t step, int block) {
   }
 }
 
-RadianceStage::FoldStage::FoldStage(const StageContext& context, std::vector<ListBlock>& blocks)
+RadianceStage::FoldStage::FoldStage(const StageContext& context, ListBlocks& blocks)
     : Stage(context),
       blocks_(blocks),
       loads_per_path_(context.config.slot_vertices / kVerticesPerLoad),

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "firmware/path_tracer/stage.hpp"
 
 /// The bins of the circular buffer (paper, figure 1). Shadow rays go round it like segments: a slot
@@ -125,10 +127,12 @@ class PathStage : public Stage {
 
 /// Radiance of the paths that the path stage listed, vertex by vertex from the last to the first (paper,
 /// section 3.1: "the normal path tracing recursive algorithm"). Its blocks are blocks of the list; each takes
-/// one list step and then as many fold steps as its longest path needs.
+/// one list step and then as many fold steps as its longest path needs. What is known of a block takes SRAM,
+/// so only kBlocksUnderWay of them are under way at a time; few passes end more paths.
 class RadianceStage {
  public:
   explicit RadianceStage(const StageContext& context);
+  static constexpr int kBlocksUnderWay = 4;
   static constexpr int kLoadBytes = sizeof(FoldRecord) + kVerticesPerLoad * sizeof(VertexRecord);
   static constexpr int kSaveBytes = sizeof(RadianceRecord) + sizeof(FoldRecord);
 
@@ -143,27 +147,38 @@ class RadianceStage {
     int loads = 0;
   };
 
+  /// Taken in turn by the blocks of the list.
+  class ListBlocks {
+   public:
+    ListBlock& operator[](int block) { return blocks_[std::size_t(block % kBlocksUnderWay)]; }
+    auto begin() { return blocks_.begin(); }
+    auto end() { return blocks_.end(); }
+
+   private:
+    std::array<ListBlock, kBlocksUnderWay> blocks_;
+  };
+
   class ListStage : public Stage {
    public:
-    ListStage(const StageContext& context, std::vector<ListBlock>& blocks)
-        : Stage(context), blocks_(blocks) {}
+    ListStage(const StageContext& context, ListBlocks& blocks) : Stage(context), blocks_(blocks) {}
     void load(std::uint64_t step, int block) override;
     void process(std::uint64_t step, int block) override;
     void save(std::uint64_t, int) override {}
 
    private:
-    std::vector<ListBlock>& blocks_;
+    ListBlocks& blocks_;
   };
 
   /// Its "block" is list block * loads_per_path + load.
   class FoldStage : public Stage {
    public:
-    FoldStage(const StageContext& context, std::vector<ListBlock>& blocks);
+    FoldStage(const StageContext& context, ListBlocks& blocks);
     void load(std::uint64_t step, int block) override;
     void process(std::uint64_t step, int block) override;
     void save(std::uint64_t step, int block) override;
 
     void set_results(cn::MonoPointer<RadianceRecord> results) { results_ = results; }
+    bool is_last(int block) const { return load_of(block) == 0; }
 
    private:
     struct Loads {
@@ -177,12 +192,11 @@ class RadianceStage {
     Loads loads(std::uint64_t step) const;
     Saves saves(std::uint64_t step) const;
     bool is_first(int block) const { return load_of(block) + 1 == list_block(block).loads; }
-    bool is_last(int block) const { return load_of(block) == 0; }
     int load_of(int block) const { return block % loads_per_path_; }
     int list_index(int block) const { return block / loads_per_path_; }
-    ListBlock& list_block(int block) const { return blocks_[std::size_t(list_index(block))]; }
+    ListBlock& list_block(int block) const { return blocks_[list_index(block)]; }
 
-    std::vector<ListBlock>& blocks_;
+    ListBlocks& blocks_;
     int loads_per_path_;
     cn::PolySpan sum_;
     cn::MonoPointer<RadianceRecord> results_;
@@ -194,13 +208,13 @@ class RadianceStage {
   const FoldStage& fold() const { return fold_; }
 
   /// Starts on block `block` of the list, which has that many entries.
-  void begin_block(int block, int entries) { blocks_[std::size_t(block)].entries = entries; }
-  int loads(int block) const { return blocks_[std::size_t(block)].loads; }
+  void begin_block(int block, int entries) { blocks_[block].entries = entries; }
+  int loads(int block) { return blocks_[block].loads; }
   int fold_block(int block, int load) const { return block * loads_per_path_ + load; }
 
  private:
   int loads_per_path_;
-  std::vector<ListBlock> blocks_;
+  ListBlocks blocks_;
   ListStage list_;
   FoldStage fold_;
 };

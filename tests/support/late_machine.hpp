@@ -32,7 +32,8 @@ class LateMachine : public cn::Machine {
   std::vector<std::string> calls;
   std::uint64_t mono_instructions = 0;
 
-  /// Faults when a transfer writes poly memory that one under way uses, or reads what one under way writes.
+  /// Faults when a transfer writes poly memory that one under way uses, or reads what one under way writes,
+  /// of a PE that both serve.
   bool guards_buffers = false;
 
   std::size_t under_way() const { return pending_.size(); }
@@ -101,6 +102,10 @@ class LateMachine : public cn::Machine {
     }
   }
 
+  bool share_a_pe(const cn::Transfer& a, const cn::Transfer& b) const {
+    return a.enabled.without(b.enabled).count() < a.enabled.count();
+  }
+
   bool buffer_is_in_use(const cn::Transfer& transfer) const {
     const auto overlaps = [&](const cn::PolySpan& a, const cn::PolySpan& b) {
       return a.offset_bytes < b.offset_bytes + b.size_bytes && b.offset_bytes < a.offset_bytes + a.size_bytes;
@@ -108,7 +113,7 @@ class LateMachine : public cn::Machine {
     return std::any_of(pending_.begin(), pending_.end(), [&](const cn::Transfer& other) {
       const bool both_read =
           transfer.direction == cn::Direction::poly_to_mono && other.direction == transfer.direction;
-      return !both_read && overlaps(transfer.poly, other.poly);
+      return !both_read && overlaps(transfer.poly, other.poly) && share_a_pe(transfer, other);
     });
   }
 

@@ -381,9 +381,9 @@ TEST_F(ControlUnit, FaultsOfTransfersReachTheCaller) {
 TEST(CycleCauses, HaveNamesOfTheirOwn) {
   std::vector<std::string> names;
   for (int i = 0; i < model::kCycleCauses; ++i) names.push_back(model::cycle_cause_name(CycleCause(i)));
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore", "transfer_call",
-                                      "wait_load", "wait_save", "wait_pio_queue", "wait_host"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore",
+                                             "transfer_call", "wait_load", "wait_save", "wait_pio_queue",
+                                             "wait_host", "thread_switch"}));
 }
 
 }  // namespace

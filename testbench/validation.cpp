@@ -189,7 +189,7 @@ struct Job {
 std::vector<Job> make_jobs(cn::Level level) {
   examples::Dgemm::Problem dgemm;
   dgemm.column_blocks = 2;
-  dgemm.depth_blocks = 120;
+  dgemm.panels = 96;
   examples::MonteCarlo::Problem monte_carlo;
   monte_carlo.kernels = 64;
   constexpr int kImages = 4;

@@ -57,14 +57,17 @@ TEST(DgemmExample, CheckNoticesOneWrongElement) {
 }
 
 TEST(DgemmExample, ShapeMustFitPathFeedersAndSram) {
-  const auto fault = [](Dgemm::Shape shape) -> std::string {
+  const auto fault = [](Dgemm::Shape shape, int num_pes = 16) -> std::string {
+    testbench::NativeMachine machine(num_pes, 6144, 8);
     try {
-      run_natively(dgemm_run(problem(shape, 1, 1, 1), 16, cn::Level::x86_64_v2), 16);
+      const Dgemm dgemm(machine, examples::kernels(cn::Level::x86_64_v2), problem(shape, 1, 1, 1));
       return {};
     } catch (const std::exception& error) {
       return error.what();
     }
   };
+  EXPECT_EQ(fault({}), "");
+  EXPECT_EQ(fault({}, 8), "DGEMM: found 8 PEs, allowed are more than 8");
   EXPECT_EQ(fault({6, 8, 4}), "DGEMM tiles: found 6, allowed is a positive multiple of 4");
   EXPECT_EQ(fault({6, 8, 0}), "DGEMM chunk_tiles: found 0, allowed is a positive multiple of 1");
   EXPECT_EQ(fault({6, 12, 2}), "DGEMM depth: found 12, allowed is a positive multiple of 8");

@@ -33,6 +33,8 @@ struct ChipConfig {
     int cache_miss_cycles;     ///< in the control unit, on top of what the memory takes
     int semaphore_cycles;      ///< a signal or an unblocked wait
     int transfer_call_cycles;  ///< software that starts an asynchronous copy
+    int threads;               ///< hardware threads, the firmware's first one included
+    int thread_switch_cycles;  ///< from one hardware thread to another
   } control;
 
   struct Pio {

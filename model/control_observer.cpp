@@ -7,8 +7,8 @@ namespace model {
 
 const char* cycle_cause_name(CycleCause cause) {
   static constexpr std::array<const char*, kCycleCauses> kNames = {
-      "poly",          "stolen",    "mono",      "data_cache",     "semaphore",
-      "transfer_call", "wait_load", "wait_save", "wait_pio_queue", "wait_host"};
+      "poly",      "stolen",    "mono",           "data_cache", "semaphore",    "transfer_call",
+      "wait_load", "wait_save", "wait_pio_queue", "wait_host",  "thread_switch"};
   return kNames.at(std::size_t(cause));
 }
 

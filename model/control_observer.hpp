@@ -18,9 +18,10 @@ enum class CycleCause : std::uint8_t {
   wait_save,       ///< blocked on a semaphore of a poly-to-mono transfer
   wait_pio_queue,  ///< blocked because the PIO queue was full
   wait_host,       ///< blocked on a semaphore of the host
+  thread_switch,   ///< from one hardware thread to another
 };
 
-inline constexpr int kCycleCauses = static_cast<int>(CycleCause::wait_host) + 1;
+inline constexpr int kCycleCauses = static_cast<int>(CycleCause::thread_switch) + 1;
 
 const char* cycle_cause_name(CycleCause cause);
 

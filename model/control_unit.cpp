@@ -7,12 +7,6 @@
 #include "model/annotated_delay.hpp"
 
 namespace model {
-namespace {
-
-/// Firmware runs whole programs on this stack; SystemC's default of 256 KiB is for small processes.
-constexpr int kFirmwareStackBytes = 8 << 20;
-
-}  // namespace
 
 Cycles ControlStatistics::total() const {
   return std::accumulate(cycles.begin(), cycles.end(), Cycles{0});
@@ -30,6 +24,8 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       config_(config),
       clock_(clock),
       pe_array_(pe_array),
+      threads_(config.control.threads, cn::kFirstThreadPriority),
+      processes_(std::size_t(config.control.threads)),
       data_cache_(config.control.data_cache_bytes, config.control.cache_line_bytes),
       mono_window_(config.ddr.size_bytes, poly_memory()),
       line_(std::size_t(config.control.cache_line_bytes)) {
@@ -57,16 +53,9 @@ void ControlUnit::run() {
   now_ = clock_.cycle_at(sc_core::sc_time_stamp());
   start_cycle_ = now_;
   firmware_started_ = true;
-  try {
+  run_thread([this] {
     if (firmware_) firmware_(*this);
-    synchronise();
-  } catch (const sc_core::sc_unwind_exception&) {
-    throw;  // the kernel ends this process
-  } catch (...) {
-    failure_ = std::current_exception();  // SystemC would make a report of it and lose its type
-  }
-  finished_ = true;
-  finished_event_.notify(sc_core::SC_ZERO_TIME);
+  });
 }
 
 void ControlUnit::rethrow_failure() const {
@@ -153,6 +142,7 @@ void ControlUnit::issue_mono(std::uint64_t instructions) {
   const double cycles = config_.poly.code_quality_factor *
                         config_.poly.cycles[std::size_t(cn::InstructionClass::mono)] * double(instructions);
   spend(CycleCause::mono, static_cast<Cycles>(cycles + 0.5));
+  let_higher_priority_run();
 }
 
 void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
@@ -174,6 +164,7 @@ void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
   if (observer_ != nullptr)
     observer_->ran_kernel(kernel, start, now_, static_cast<int>(issued.root().enabled_lanes));
   synchronise_for_observer();
+  let_higher_priority_run();
 }
 
 void ControlUnit::start_transfer(const cn::Transfer& transfer) {
@@ -189,6 +180,7 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
   report_begin(CycleCause::wait_pio_queue);
   const Cycles go_on = pio->enqueue(transfer, now_);
   spend(CycleCause::wait_pio_queue, go_on - now_);
+  let_higher_priority_run();
 }
 
 void ControlUnit::signal_at(int index, Cycles at) {
@@ -205,16 +197,29 @@ void ControlUnit::sem_signal(cn::Semaphore semaphore) {
   semaphore_file_.signal(semaphore.index, now_);
   wait_record_.signalled(semaphore.index, Signaller::control_unit, now_);
   if (access_observer() != nullptr) access_observer()->signalled(semaphore);
-  if (!shared_with_host_[std::size_t(semaphore.index)]) return;
-  synchronise();
-  host_event_.notify(sc_core::SC_ZERO_TIME);
-  for (int delta = 0; delta < 2; ++delta) wait(sc_core::SC_ZERO_TIME);  // what it begins now comes first
+  if (shared_with_host_[std::size_t(semaphore.index)]) {
+    synchronise();
+    host_event_.notify(sc_core::SC_ZERO_TIME);
+    for (int delta = 0; delta < 2; ++delta) wait(sc_core::SC_ZERO_TIME);  // what it begins now comes first
+  }
+  let_higher_priority_run();
 }
 
 void ControlUnit::sem_wait(cn::Semaphore semaphore) {
   if (!timed_) return;
   spend(CycleCause::semaphore, Cycles(config_.control.semaphore_cycles), semaphore.index);
+  let_higher_priority_run();
   settle_pio(now_);
+  if (threads_.alive() > 1) {
+    wait_among_threads(semaphore);
+  } else {
+    wait_alone(semaphore);
+  }
+  if (access_observer() != nullptr) access_observer()->waited(semaphore);
+  synchronise_for_observer();
+}
+
+void ControlUnit::wait_alone(cn::Semaphore semaphore) {
   wait_record_.waits(Waiter::control_unit, semaphore, now_);
   if (shared_with_host_[std::size_t(semaphore.index)]) {
     wait_for_host(semaphore);
@@ -222,13 +227,15 @@ void ControlUnit::sem_wait(cn::Semaphore semaphore) {
     wait_for_signal(semaphore);
   }
   wait_record_.goes_on(Waiter::control_unit, now_);
-  if (access_observer() != nullptr) access_observer()->waited(semaphore);
-  synchronise_for_observer();
+}
+
+CycleCause ControlUnit::cause_of_wait(cn::Semaphore semaphore) const {
+  if (shared_with_host_[std::size_t(semaphore.index)]) return CycleCause::wait_host;
+  return waits_for_save_[std::size_t(semaphore.index)] ? CycleCause::wait_save : CycleCause::wait_load;
 }
 
 void ControlUnit::wait_for_signal(cn::Semaphore semaphore) {
-  const CycleCause cause =
-      waits_for_save_[std::size_t(semaphore.index)] ? CycleCause::wait_save : CycleCause::wait_load;
+  const CycleCause cause = cause_of_wait(semaphore);
   std::optional<Cycles> at = semaphore_file_.take(semaphore.index);
   if (!at) report_begin(cause, semaphore.index);
   // Nobody can queue another request while this thread waits, so the engine may decide on and on.
@@ -244,15 +251,16 @@ void ControlUnit::wait_for_host(cn::Semaphore semaphore) {
     report_begin(CycleCause::wait_host, semaphore.index);
     at = semaphore_file_.take(semaphore.index);
   }
-  for (; !at; at = semaphore_file_.take(semaphore.index)) wait_for_host_event();
+  for (; !at; at = semaphore_file_.take(semaphore.index)) wait_for_host_event(pio->next_start());
   if (*at > now_) spend(CycleCause::wait_host, *at - now_, semaphore.index);
 }
 
-/// Lets time pass until the host signals something, or a queued request starts: it is served in its time.
-void ControlUnit::wait_for_host_event() {
-  if (const std::optional<Cycles> request = pio->next_start()) {
-    if (host_traffic.size() > 0) host_traffic->book_until(*request);
-    wait(clock_.time_at(*request) - sc_core::sc_time_stamp(), signalled_by_host_);
+/// Lets time pass until the host signals something or `at_the_latest` has come, the start of the next queued
+/// request if there is one: it is served in its time.
+void ControlUnit::wait_for_host_event(std::optional<Cycles> at_the_latest) {
+  if (at_the_latest) {
+    if (host_traffic.size() > 0) host_traffic->book_until(*at_the_latest);
+    wait(clock_.time_at(*at_the_latest) - sc_core::sc_time_stamp(), signalled_by_host_);
   } else {
     wait(signalled_by_host_);
   }

@@ -20,6 +20,7 @@
 #include "model/pio_port.hpp"
 #include "model/semaphore_file.hpp"
 #include "model/stolen_cycles.hpp"
+#include "model/thread_scheduler.hpp"
 #include "model/wait_record.hpp"
 
 namespace model {
@@ -29,6 +30,7 @@ struct ControlStatistics {
   std::uint64_t mono_instructions = 0;
   std::uint64_t data_cache_hits = 0;
   std::uint64_t data_cache_misses = 0;
+  std::uint64_t thread_switches = 0;
 
   Cycles operator[](CycleCause cause) const { return cycles[std::size_t(cause)]; }
   Cycles total() const;
@@ -36,11 +38,16 @@ struct ControlStatistics {
   Cycles exposed_pio() const;
 };
 
-/// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on SystemC's only
-/// firmware process and runs ahead by a local cycle count; it synchronises with SystemC time where the host
-/// can see it (semaphores shared with the host, the end) and wherever an observer asks for it. With an agenda
-/// it is approximately timed: the PIO port lets time pass at each request, semaphore wait and kernel end, and
-/// mono accesses are transactions of four phases.
+/// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on a SystemC process
+/// and runs ahead by a local cycle count; it synchronises with SystemC time where the host can see it
+/// (semaphores shared with the host, the end) and wherever an observer asks for it. With an agenda it is
+/// approximately timed: the PIO port lets time pass at each request, semaphore wait and kernel end, and mono
+/// accesses are transactions of four phases.
+///
+/// Further hardware threads (loosely timed only) share that stream and its cycle count: ThreadScheduler says
+/// which one has it. It changes hands at a semaphore wait that blocks and, for a thread of higher priority,
+/// after a kernel, mono instructions, a request or a semaphore operation. What makes the control unit itself
+/// stand still, a full PIO queue or a data cache miss, stops all threads.
 class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort {
  public:
   sc_core::sc_port<PioPort> pio{"pio"};
@@ -93,6 +100,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void sem_wait(cn::Semaphore semaphore) override;
   void issue_mono(std::uint64_t instructions) override;
   void timed(bool on) override;
+  void start_thread(int priority, const std::string& name, std::function<void()> body) override;
 
   void signal_at(int index, Cycles at) override;
 
@@ -105,9 +113,11 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
  private:
   void run();
   void spend(CycleCause cause, Cycles cycles, int semaphore = -1);
+  CycleCause cause_of_wait(cn::Semaphore semaphore) const;
+  void wait_alone(cn::Semaphore semaphore);
   void wait_for_signal(cn::Semaphore semaphore);
   void wait_for_host(cn::Semaphore semaphore);
-  void wait_for_host_event();
+  void wait_for_host_event(std::optional<Cycles> at_the_latest);
   void wait_until(Cycles cycle);
   bool host_is_transferring() const { return host_traffic.size() > 0 && host_traffic->in_progress(); }
   /// Settles the PIO engine up to `cycle`; does not run ahead of the host while that uses the network.
@@ -124,11 +134,38 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay);
 
+  // Hardware threads (control_unit_threads.cpp):
+  /// Firmware threads need stacks of their own. They are SystemC processes, since time passes (wait()) deep
+  /// within firmware's calls and SystemC knows no other stacks. A process is spawned with the first switch to
+  /// a thread that was started: firmware of one thread has none more. Only the one that has the control unit
+  /// is ever awake for itself.
+  struct ThreadProcess {
+    std::function<void()> body;
+    bool spawned;
+    sc_core::sc_event go_on;
+  };
+  void run_thread(const std::function<void()>& body);
+  void let_higher_priority_run();
+  void wait_among_threads(cn::Semaphore semaphore);
+  int choose_thread();
+  ThreadScheduler::Ready wait_until_a_thread_is_ready();
+  bool a_thread_waits_for_host() const;
+  void dispatch(int thread);
+  void switch_to(int thread, int self);
+  void wake(int thread);
+  void stop_other_threads();
+
+  /// Firmware runs whole programs on this stack; SystemC's default of 256 KiB is for small processes.
+  static constexpr int kFirmwareStackBytes = 8 << 20;
+
   const ChipConfig& config_;
   ClockDomain clock_;
   PeArray& pe_array_;
   SemaphoreFile semaphore_file_;
   WaitRecord wait_record_;
+  ThreadScheduler threads_;
+  std::vector<std::unique_ptr<ThreadProcess>>
+      processes_;  ///< by slot; none before a second thread is started
   DataCache data_cache_;
   MonoWindow mono_window_;
   std::unique_ptr<AtTransport> at_transport_;

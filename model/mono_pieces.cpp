@@ -24,21 +24,39 @@ bool is_misaligned(cn::MonoAddress address, std::uint64_t bytes, std::uint64_t p
   return address % 8 != 0 || packet.remainder(address) + bytes > packets_bytes;
 }
 
-/// Of `pieces` that lie one behind the other.
-int count_misaligned(cn::MonoAddress address, std::uint64_t bytes, int pieces, const Divisor& packet) {
-  const std::uint64_t packets_bytes = whole_packets(bytes, packet);
-  // Offsets within packets and words repeat.
-  const auto period = static_cast<int>(std::lcm(packet.value(), std::uint64_t{8}) /
-                                       std::gcd(std::lcm(packet.value(), std::uint64_t{8}), bytes));
-  int in_period = 0;
-  int in_rest = 0;
-  for (int i = 0; i < std::min(period, pieces); ++i) {
-    const bool misaligned = is_misaligned(address + std::uint64_t(i) * bytes, bytes, packets_bytes, packet);
-    in_period += misaligned;
-    if (i < pieces % period) in_rest += misaligned;
-  }
-  return pieces / period * in_period + in_rest;
+constexpr int kWordLanes = 64;
+
+/// The enable bits of PEs first_pe .. first_pe + 63 below `num_pes`.
+std::uint64_t enabled_word(const cn::LaneMask& enabled, int first_pe, int num_pes) {
+  const int strips = std::min(kWordLanes, num_pes - first_pe) / cn::kStripLanes;
+  std::uint64_t word = 0;
+  for (int strip = 0; strip < strips; ++strip)
+    word |= std::uint64_t{enabled.strip_bits(first_pe / cn::kStripLanes + strip)}
+            << (strip * cn::kStripLanes);
+  return word;
 }
+
+/// One bit a piece of a packed array: whether it is misaligned. Offsets within packets and words repeat after
+/// `period` pieces, so for a period that divides 64 the same word holds for every 64 pieces.
+class MisalignedPattern {
+ public:
+  MisalignedPattern(cn::MonoAddress first, std::uint64_t bytes, const Divisor& packet) {
+    const std::uint64_t whole = std::lcm(packet.value(), std::uint64_t{8});
+    const std::uint64_t period = whole / std::gcd(whole, bytes);
+    repeats_ = kWordLanes % period == 0;
+    const std::uint64_t packets_bytes = whole_packets(bytes, packet);
+    for (std::uint64_t piece = 0; repeats_ && piece < period; ++piece)
+      if (is_misaligned(first + piece * bytes, bytes, packets_bytes, packet))
+        for (std::uint64_t place = piece; place < kWordLanes; place += period)
+          word_ |= std::uint64_t{1} << place;
+  }
+  bool repeats() const { return repeats_; }
+  std::uint64_t word() const { return word_; }
+
+ private:
+  bool repeats_;
+  std::uint64_t word_ = 0;
+};
 
 }  // namespace
 
@@ -69,29 +87,37 @@ void MonoPieces::describe(const cn::Transfer& transfer, int num_pes, const Rules
   bytes_per_pe_ = transfer.poly.size_bytes;
   pes_ = pieces_ = misaligned_ = 0;
   runs_.clear();
-  if (!describe_gapless_array(num_pes, rules)) describe_each(num_pes, rules);
+  if (!describe_packed_array(num_pes, rules)) describe_each(num_pes, rules);
   packets_ = 0;
   for (const Run& run : runs_)
     packets_ += rules.packet_bytes.quotient(run.bytes + rules.packet_bytes.value() - 1);
 }
 
-bool MonoPieces::describe_gapless_array(int num_pes, const Rules& rules) {
+/// An array without gaps between its pieces, whichever PEs take part: runs are runs of enable bits.
+bool MonoPieces::describe_packed_array(int num_pes, const Rules& rules) {
   if (!by_pe_.empty() || bytes_per_pe_ == 0 || stride_bytes_ != std::uint64_t(bytes_per_pe_)) return false;
-  int lowest = num_pes;
-  int highest = -1;
-  int enabled_pes = 0;
-  for (int first_pe = 0; first_pe < num_pes; first_pe += cn::kStripLanes) {
-    const unsigned bits = enabled_.strip_bits(first_pe / cn::kStripLanes);
-    if (bits == 0) continue;
-    if (highest < 0) lowest = first_pe + __builtin_ctz(bits);
-    highest = first_pe + 31 - __builtin_clz(bits);
-    enabled_pes += __builtin_popcount(bits);
+  const MisalignedPattern pattern(first_, stride_bytes_, rules.packet_bytes);
+  if (!pattern.repeats()) return false;
+  int run_end = -1;
+  for (int first_pe = 0; first_pe < num_pes; first_pe += kWordLanes) {
+    std::uint64_t bits = enabled_word(enabled_, first_pe, num_pes);
+    pes_ += __builtin_popcountll(bits);
+    misaligned_ += __builtin_popcountll(bits & pattern.word());
+    while (bits != 0) {
+      const int start = __builtin_ctzll(bits);
+      const std::uint64_t above = bits + (std::uint64_t{1} << start);  // 0 when the run reaches bit 63
+      const int end = above == 0 ? kWordLanes : __builtin_ctzll(above);
+      const std::uint64_t run_bytes = std::uint64_t(end - start) * stride_bytes_;
+      if (first_pe + start == run_end) {
+        runs_.back().bytes += run_bytes;
+      } else {
+        runs_.emplace_back(first_ + std::uint64_t(first_pe + start) * stride_bytes_, run_bytes);
+      }
+      run_end = first_pe + end;
+      bits &= above == 0 ? 0 : ~std::uint64_t{0} << end;
+    }
   }
-  if (enabled_pes == 0 || highest - lowest + 1 != enabled_pes) return false;
-  const cn::MonoAddress address = first_ + std::uint64_t(lowest) * stride_bytes_;
-  pes_ = pieces_ = enabled_pes;
-  runs_.emplace_back(address, std::uint64_t(enabled_pes) * stride_bytes_);
-  misaligned_ = count_misaligned(address, stride_bytes_, enabled_pes, rules.packet_bytes);
+  pieces_ = pes_;
   return true;
 }
 

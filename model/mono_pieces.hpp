@@ -67,7 +67,7 @@ class MonoPieces {
     std::uint64_t generation_ = 0;
   };
 
-  bool describe_gapless_array(int num_pes, const Rules& rules);
+  bool describe_packed_array(int num_pes, const Rules& rules);
   void describe_each(int num_pes, const Rules& rules);
   template <class AddressOf, class IsNew>
   void describe_pieces(int num_pes, const Rules& rules, const AddressOf& address_of, const IsNew& is_new);

@@ -224,6 +224,14 @@ void declare_control(Parameters& table) {
       "software that starts an asynchronous copy, before the engine sees it; that send and receive overhead "
       "limits "
       "small transfers is measured [S13], the cycles are not"));
+  table.push_back(integer<group, &Control::threads>("control.threads", "threads", 8, {1, 8}, assumed,
+                                                    "hardware threads, the firmware's first one included: "
+                                                    "exist [S15c], number assumed [reference, section 1]"));
+  table.push_back(integer<group, &Control::thread_switch_cycles>(
+      "control.thread_switch_cycles", "cycles", 0, {0, kMaxCycles}, assumed,
+      "switch from one hardware thread to another, when the running one waits on a semaphore or one of "
+      "higher priority "
+      "is ready [reference, section 1]"));
 }
 
 void declare_pio(Parameters& table) {

@@ -37,6 +37,12 @@ class SemaphoreFile {
   /// Signals known and not taken, arrived or not.
   int count(int index) const { return static_cast<int>(pending_.at(std::size_t(index)).size()); }
 
+  /// When the earliest signal arrives that nobody has taken; nothing when none is known.
+  std::optional<Cycles> first_signal(int index) const {
+    const auto& pending = pending_.at(std::size_t(index));
+    return pending.empty() ? std::nullopt : std::optional(pending.front());
+  }
+
  private:
   std::array<std::deque<Cycles>, cn::Machine::kSemaphores> pending_;
 };

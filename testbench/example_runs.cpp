@@ -11,6 +11,8 @@
 namespace testbench {
 namespace {
 
+using examples::Dgemm;
+
 constexpr double kPi = 3.14159265358979323846;
 
 /// Numbers in [-1, 1) that only depend on their index: splitmix64 (Steele, Lea, Flood, 2014).
@@ -37,36 +39,55 @@ void write(std::vector<std::uint8_t>& mono, cn::MonoPointer<T> to, std::uint64_t
 /// Where the elements of a DGEMM problem lie.
 class DgemmBlocks {
  public:
-  DgemmBlocks(const examples::Dgemm::Problem& problem, int num_pes)
-      : rows_(std::uint64_t(problem.shape.rows)),
-        columns_(std::uint64_t(problem.shape.columns)),
+  DgemmBlocks(const Dgemm::Problem& problem, int num_pes)
+      : pes_(std::uint64_t(num_pes) - kFeeders),
+        tiles_(std::uint64_t(problem.shape.tiles)),
+        chunk_tiles_(std::uint64_t(problem.shape.chunk_tiles)),
         depth_(std::uint64_t(problem.shape.depth)),
-        block_rows_(rows_ * std::uint64_t(num_pes)),
         column_blocks_(std::uint64_t(problem.column_blocks)),
-        depth_blocks_(std::uint64_t(problem.depth_blocks)),
-        m_(block_rows_ * std::uint64_t(problem.row_blocks)),
-        n_(columns_ * column_blocks_),
-        k_(depth_ * depth_blocks_) {}
+        m_(kRows * pes_ * std::uint64_t(problem.row_blocks)),
+        n_(kColumns * tiles_ * column_blocks_),
+        k_(depth_ * std::uint64_t(problem.panels)) {}
 
   std::uint64_t m() const { return m_; }
   std::uint64_t n() const { return n_; }
   std::uint64_t k() const { return k_; }
+  std::uint64_t start_elements() const { return column_blocks_ * pes_ * tiles_ * kColumns; }
+
+  /// Of the terms of the sums in row i: it is PE i / 2's, which starts with its own number.
+  std::uint64_t first_term(std::uint64_t i) const { return i / kRows % pes_ % k_; }
 
   std::uint64_t a(std::uint64_t i, std::uint64_t l) const {
-    const std::uint64_t block = i / block_rows_ * depth_blocks_ + l / depth_;
-    return (block * block_rows_ + i % block_rows_ / rows_ * rows_) * depth_ + l % depth_ * rows_ + i % rows_;
+    const std::uint64_t term = (l + k_ - first_term(i)) % k_;
+    const std::uint64_t panel = i / (kRows * pes_) * (k_ / depth_) + term / depth_;
+    return ((panel * pes_ + i / kRows % pes_) * depth_ + term % depth_) * kRows + i % kRows;
   }
-  std::uint64_t b(std::uint64_t l, std::uint64_t j) const {
-    return (j / columns_ * k_ + l) * columns_ + j % columns_;
+  std::uint64_t b_start(std::uint64_t pe, std::uint64_t j) const {
+    return (j / block_columns() * pes_ + pe) * block_columns() + j % block_columns();
+  }
+  std::uint64_t b_stream(std::uint64_t l, std::uint64_t j) const {
+    const std::uint64_t turn = (l + k_ - pes_ % k_) % k_;
+    const std::uint64_t tile = j / kColumns % tiles_;
+    const std::uint64_t panel = j / block_columns() * (k_ / depth_) + turn / depth_;
+    const std::uint64_t chunk = panel * (tiles_ / chunk_tiles_) + tile / chunk_tiles_;
+    const std::uint64_t of_feeder = (chunk * kFeeders + turn % kFeeders) * chunk_tiles_ + tile % chunk_tiles_;
+    return (of_feeder * (depth_ / kFeeders) + turn % depth_ / kFeeders) * kColumns + j % kColumns;
   }
   std::uint64_t c(std::uint64_t i, std::uint64_t j) const {
-    const std::uint64_t block = i / block_rows_ * column_blocks_ + j / columns_;
-    return (block * block_rows_ + i % block_rows_ / rows_ * rows_) * columns_ + j % columns_ * rows_ +
-           i % rows_;
+    const std::uint64_t block = i / (kRows * pes_) * column_blocks_ + j / block_columns();
+    const std::uint64_t tile = (block * pes_ + i / kRows % pes_) * tiles_ + j / kColumns % tiles_;
+    return (tile * kRows + i % kRows) * kColumns + j % kColumns;
   }
+  std::uint64_t pes() const { return pes_; }
 
  private:
-  std::uint64_t rows_, columns_, depth_, block_rows_, column_blocks_, depth_blocks_, m_, n_, k_;
+  static constexpr std::uint64_t kRows = Dgemm::kRows;
+  static constexpr std::uint64_t kColumns = Dgemm::kTileColumns;
+  static constexpr std::uint64_t kFeeders = Dgemm::kFeeders;
+
+  std::uint64_t block_columns() const { return tiles_ * kColumns; }
+
+  std::uint64_t pes_, tiles_, chunk_tiles_, depth_, column_blocks_, m_, n_, k_;
 };
 
 double element_of_a(std::uint64_t i, std::uint64_t l) {
@@ -77,25 +98,36 @@ double element_of_b(std::uint64_t l, std::uint64_t j) {
 }
 
 void check_product(const DgemmBlocks& blocks, cn::MonoPointer<double> c, const std::uint8_t* mono) {
-  std::vector<double> row_of_a(blocks.k());
   std::vector<double> b(blocks.k() * blocks.n());
   for (std::uint64_t l = 0; l < blocks.k(); ++l)
     for (std::uint64_t j = 0; j < blocks.n(); ++j) b[l * blocks.n() + j] = element_of_b(l, j);
-  // Of |elements| below 1, rounding errors of the k products and sums add up to less than this.
-  const double tolerance = double(blocks.k()) * double(blocks.k()) * 0x1p-52;
   std::vector<double> row(blocks.n());
   for (std::uint64_t i = 0; i < blocks.m(); ++i) {
     row.assign(row.size(), 0.0);
-    for (std::uint64_t l = 0; l < blocks.k(); ++l) {
+    for (std::uint64_t term = 0; term < blocks.k(); ++term) {
+      const std::uint64_t l = (blocks.first_term(i) + term) % blocks.k();
       const double a = element_of_a(i, l);
       for (std::uint64_t j = 0; j < blocks.n(); ++j) row[j] += a * b[l * blocks.n() + j];
     }
     for (std::uint64_t j = 0; j < blocks.n(); ++j) {
       const double found = read(mono, c, blocks.c(i, j));
-      if (!(std::abs(found - row[j]) <= tolerance))
+      if (found != row[j])
         throw RunError("DGEMM: element (" + std::to_string(i) + ", " + std::to_string(j) + ") is " +
                        std::to_string(found) + ", the host's is " + std::to_string(row[j]));
     }
+  }
+}
+
+/// Fills A and B, as the firmware expects them.
+void write_factors(std::vector<std::uint8_t>& mono, const Dgemm::Problem& problem,
+                   const DgemmBlocks& blocks) {
+  for (std::uint64_t i = 0; i < blocks.m(); ++i)
+    for (std::uint64_t l = 0; l < blocks.k(); ++l) write(mono, problem.a, blocks.a(i, l), element_of_a(i, l));
+  for (std::uint64_t j = 0; j < blocks.n(); ++j) {
+    for (std::uint64_t pe = 0; pe < blocks.pes(); ++pe)
+      write(mono, problem.b_start, blocks.b_start(pe, j), element_of_b(pe % blocks.k(), j));
+    for (std::uint64_t l = 0; l < blocks.k(); ++l)
+      write(mono, problem.b_stream, blocks.b_stream(l, j), element_of_b(l, j));
   }
 }
 
@@ -184,21 +216,17 @@ class FftCheck {
 
 }  // namespace
 
-ExampleRun dgemm_run(examples::Dgemm::Problem problem, int num_pes, cn::Level level) {
+ExampleRun dgemm_run(Dgemm::Problem problem, int num_pes, cn::Level level) {
   const DgemmBlocks blocks(problem, num_pes);
   problem.a = {0};
-  problem.b = problem.a + blocks.m() * blocks.k();
-  problem.c = problem.b + blocks.k() * blocks.n();
+  problem.b_start = problem.a + blocks.m() * blocks.k();
+  problem.b_stream = problem.b_start + blocks.start_elements();
+  problem.c = problem.b_stream + blocks.k() * blocks.n();
   ExampleRun run;
   run.mono.resize((problem.c + blocks.m() * blocks.n()).address);
-  for (std::uint64_t i = 0; i < blocks.m(); ++i)
-    for (std::uint64_t l = 0; l < blocks.k(); ++l)
-      write(run.mono, problem.a, blocks.a(i, l), element_of_a(i, l));
-  for (std::uint64_t l = 0; l < blocks.k(); ++l)
-    for (std::uint64_t j = 0; j < blocks.n(); ++j)
-      write(run.mono, problem.b, blocks.b(l, j), element_of_b(l, j));
+  write_factors(run.mono, problem, blocks);
   run.firmware = [problem, level](cn::Machine& machine) {
-    examples::Dgemm(machine, examples::kernels(level), problem).run();
+    Dgemm(machine, examples::kernels(level), problem).run();
   };
   run.check = [blocks, c = problem.c](const std::uint8_t* mono) { check_product(blocks, c, mono); };
   run.work = 2.0 * double(blocks.m()) * double(blocks.n()) * double(blocks.k());

@@ -20,8 +20,9 @@ struct ExampleRun {
   double work = 0;  ///< floating-point operations, or samples
 };
 
-/// C = A B of pseudo-random matrices. Every element is compared with a plain product on the host.
-/// `problem` gives the shape and the number of blocks; addresses are set here. work: 2 M N K.
+/// C = A B of pseudo-random matrices. Every element must equal that of a plain product on the host
+/// that sums in the same order (dgemm.hpp). `problem` gives the shape and the number of blocks; addresses are
+/// set here. work: 2 M N K.
 ExampleRun dgemm_run(examples::Dgemm::Problem problem, int num_pes, cn::Level level);
 
 /// A European call option. The mean must lie within five standard errors of the Black-Scholes price.

@@ -1,6 +1,8 @@
 #include "firmware/cn/poly4.hpp"
 
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
@@ -193,6 +195,70 @@ TEST_F(CnPolyArray, AccessesCountWordsAndSteps) {
             counts({{InstructionClass::swazzle_vector4, 5}}));
   EXPECT_EQ(issued_by([&] { array.load_and_swazzle(kScattered, 2); }),
             counts({{InstructionClass::sram_vector_load, 8}, {InstructionClass::swazzle_vector4, 2}}));
+}
+
+/// A walk along the path, register by register: each step brings the right neighbour's vector, and before
+/// each `feeders` steps the last PEs take another of their own.
+class Walk {
+ public:
+  Walk(int num_pes, int feeders) : at_(std::size_t(num_pes)), feeders_(feeders) {
+    for (int pe = 0; pe < num_pes; ++pe) at_[std::size_t(pe)] = {0, pe};
+    feed(0);
+  }
+  void step(int number) {
+    for (std::size_t pe = 0; pe + 1 < at_.size(); ++pe) at_[pe] = at_[pe + 1];
+    if (number % feeders_ == 0) feed(number / feeders_);
+  }
+  /// Place and PE that what PE `pe` has was loaded from.
+  std::pair<int, int> source(int pe) const { return at_[std::size_t(pe)]; }
+
+ private:
+  void feed(int turn) {
+    for (std::size_t pe = at_.size() - std::size_t(feeders_); pe < at_.size(); ++pe)
+      at_[pe] = {4 + 4 * turn, int(pe)};
+  }
+
+  std::vector<std::pair<int, int>> at_;
+  int feeders_;
+};
+
+TEST_F(CnPolyArray, StreamBringsWhatAWalkAlongThePathDoes) {
+  const PolyArray<std::uint64_t> array(span);
+  for (const int feeders : {1, 5, 8, 11}) {
+    const cn::VectorStream<std::uint64_t> stream(array, 0, array, 4, feeders);
+    Walk walk(num_pes(), feeders);
+    for (int steps = 0; steps < 3 * feeders; ++steps) {
+      if (steps > 0) walk.step(steps);
+      PerPe<std::uint64_t> found[4] = {per_pe<std::uint64_t>(), per_pe<std::uint64_t>(),
+                                       per_pe<std::uint64_t>(), per_pe<std::uint64_t>()};
+      run([&] {
+        const auto brought = stream.after(steps);
+        for (int e = 0; e < 4; ++e) store(found[e], brought[e]);
+      });
+      for (int pe = 0; pe < num_pes() - feeders; ++pe)
+        for (int e = 0; e < 4; ++e)
+          EXPECT_EQ(found[e][std::size_t(pe)], value(walk.source(pe).first + e, walk.source(pe).second))
+              << feeders << " feeders, step " << steps << ", PE " << pe;
+    }
+  }
+}
+
+/// Strips are executed one after the other; PEs before the feeders end with what was 8 PEs to the right.
+TEST_F(CnPolyArray, StreamMayLeaveItsVectorsWhereTheyStarted) {
+  const PolyArray<std::uint64_t> array(span);
+  const cn::VectorStream<std::uint64_t> stream(array, 0, array, 4, 8);
+  run([&] { array.store(cn::four_from(0), stream.after(8)); });
+  for (int pe = 0; pe < num_pes() - 8; ++pe)
+    EXPECT_EQ(word(1, pe), value(pe + 8 < num_pes() - 8 ? 1 : 5, pe + 8)) << pe;
+}
+
+TEST_F(CnPolyArray, StreamCostsAStepForEachVectorAndAnEnabledLoadForEachFeeding) {
+  const PolyArray<std::uint64_t> array(span);
+  const cn::VectorStream<std::uint64_t> stream(array, 0, array, 4, 8);
+  EXPECT_EQ(issued_by([&] { stream.after(0); }), counts({{InstructionClass::sram_vector_load, 8}}));
+  EXPECT_EQ(issued_by([&] { stream.after(7); }), counts({{InstructionClass::swazzle_vector4, 1}}));
+  EXPECT_EQ(issued_by([&] { stream.feed(); }),
+            counts({{InstructionClass::enable, 2}, {InstructionClass::sram_vector_load, 8}}));
 }
 
 }  // namespace

@@ -217,6 +217,36 @@ TEST_F(CommandLineErrors, OutputsInOneFile) {
   expect_error({"render", kCornellBox, "--vcd", "a.vcd", "--stats", "a.vcd"}, {"--vcd", "--stats"});
 }
 
+TEST_F(CommandLineErrors, Calibrate) {
+  const auto expect_calibrate_error = [this](const Words& arguments, const Words& parts) {
+    Words all = {"calibrate", kCornellBox};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    expect_error(all, parts);
+  };
+  for (const char* size : {"0x5", "5", "16385x1", "5x5x5"})
+    expect_calibrate_error({"--size", size, "--write", "a.hpp", "--json", "a.json"},
+                           {"--size", std::string("'") + size + "'", "1 to 16384"});
+  for (const char* option : {"--write", "--json"}) {
+    expect_calibrate_error({option, "none/a.hpp"}, {"none/a.hpp"});
+    expect_calibrate_error({option, "."}, {"directory"});
+  }
+  expect_calibrate_error({"--write", "a", "--json", "./a"}, {"--write", "--json", "./a"});
+  expect_calibrate_error({"--samples", "0"}, {"--samples", "1 to"});
+  expect_calibrate_error({"--chip", "csx601"}, {"'csx601'"});
+  expect_calibrate_error({"--alternatives", "--closed-scene", "nowhere"}, {"nowhere"});
+  expect_error({"calibrate", "nowhere", "--json", "a.json"}, {"nowhere"});
+}
+
+/// A chip so slow that no constants make it as fast as the paper's.
+TEST_F(CommandLineErrors, ConstantsThatMeetNothingAreNotWritten) {
+  const CommandResult result = run({"calibrate", kCornellBox, "--size", "16x16", "--samples", "1", "--set",
+                                    "chip.clock_hz=10000000", "--write", "a.hpp"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.out.find("cannot be met"), std::string::npos) << result.out;
+  EXPECT_NE(result.error.find("\ncsx600: --write: "), std::string::npos) << result.error;
+  EXPECT_EQ(files(), Words{});
+}
+
 TEST_F(CommandLineErrors, Waves) {
   expect_render_error({"--vcd", "a.vcd", "--native"}, {"--vcd", "--native"});
   expect_render_error({"--vcd", "a.txt"}, {"--vcd", "a.txt", ".vcd"});

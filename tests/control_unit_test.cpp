@@ -209,6 +209,55 @@ TEST_F(ControlUnit, WaitsTakeOneSignalEach) {
   EXPECT_EQ(spent(CycleCause::wait_load), 2 * kRequestCycles - 2);
 }
 
+TEST_F(ControlUnit, EachCallOfACopyTakesItsCyclesBeforeTheEngineSeesIt) {
+  model::ChipConfig config = test_chip();
+  config.control.transfer_call_cycles = 37;
+  build(config);
+  run_well([this](Machine& machine) {
+    const Semaphore done = machine.allocate_semaphore("done");
+    load(machine, done);
+    EXPECT_EQ(statistics().total(), 37u);
+    machine.sem_wait(done);
+    EXPECT_EQ(statistics().total(), 37u + kRequestCycles);
+    save(machine, done);
+    machine.sem_wait(done);
+    load(machine, done, LaneMask());  // the software does not know that no PE wants anything
+    machine.sem_wait(done);
+  });
+  EXPECT_EQ(spent(CycleCause::transfer_call), 3 * 37u);
+  EXPECT_EQ(spent(CycleCause::wait_load), kRequestCycles - 1);
+  EXPECT_EQ(spent(CycleCause::wait_save), kRequestCycles - 1);
+  EXPECT_EQ(spent(CycleCause::mono), 0u);
+}
+
+TEST_F(ControlUnit, CallsOfCopiesOverlapWithTheCopiesBefore) {
+  model::ChipConfig config = test_chip();
+  config.control.transfer_call_cycles = 50;
+  build(config);
+  run_well([](Machine& machine) {
+    const Semaphore done = machine.allocate_semaphore("done");
+    load(machine, done);
+    load(machine, done);  // called while the first is served
+    machine.sem_wait(done);
+    machine.sem_wait(done);
+  });
+  EXPECT_EQ(spent(CycleCause::transfer_call), 100u);
+  EXPECT_EQ(statistics().total(), 50 + 2 * kRequestCycles);
+}
+
+TEST_F(ControlUnit, UntimedCopiesAreCalledForNothing) {
+  model::ChipConfig config = test_chip();
+  config.control.transfer_call_cycles = 37;
+  build(config);
+  run_well([](Machine& machine) {
+    const Semaphore done = machine.allocate_semaphore("done");
+    const cn::Untimed untimed(machine);
+    load(machine, done);
+    machine.sem_wait(done);
+  });
+  EXPECT_EQ(statistics().total(), 0u);
+}
+
 TEST_F(ControlUnit, TransferWithoutAPeIsOverAtOnce) {
   run_well([](Machine& machine) {
     const Semaphore done = machine.allocate_semaphore("done");
@@ -332,9 +381,9 @@ TEST_F(ControlUnit, FaultsOfTransfersReachTheCaller) {
 TEST(CycleCauses, HaveNamesOfTheirOwn) {
   std::vector<std::string> names;
   for (int i = 0; i < model::kCycleCauses; ++i) names.push_back(model::cycle_cause_name(CycleCause(i)));
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore", "transfer_call",
-                                      "wait_load", "wait_save", "wait_pio_queue", "wait_host"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"poly", "stolen", "mono", "data_cache", "semaphore",
+                                             "transfer_call", "wait_load", "wait_save", "wait_pio_queue",
+                                             "wait_host", "thread_switch"}));
 }
 
 }  // namespace

@@ -12,28 +12,34 @@ using test_support::run_natively;
 using test_support::verdict;
 using testbench::dgemm_run;
 
-Dgemm::Problem problem(Dgemm::Shape shape, int row_blocks, int column_blocks, int depth_blocks) {
+/// Blocks of C, and panels.
+Dgemm::Problem problem(Dgemm::Shape shape, int row_blocks, int column_blocks, int panels) {
   Dgemm::Problem problem;
   problem.shape = shape;
   problem.row_blocks = row_blocks;
   problem.column_blocks = column_blocks;
-  problem.depth_blocks = depth_blocks;
+  problem.panels = panels;
   return problem;
 }
 
 TEST(DgemmExample, IsTheHostsProduct) {
+  const auto expect = [](const Dgemm::Problem& of, int num_pes, cn::Level level) {
+    const testbench::ExampleRun run = dgemm_run(of, num_pes, level);
+    EXPECT_EQ(verdict(run, run_natively(run, num_pes)), "")
+        << "level " << int(level) << ", tiles " << of.shape.tiles << ", PEs " << num_pes;
+  };
   for (const cn::Level level : levels()) {
-    for (const Dgemm::Problem& of : {problem({}, 1, 1, 1), problem({}, 2, 1, 3), problem({4, 3, 1}, 1, 3, 5),
-                                     problem({8, 6, 5}, 3, 2, 2), problem({4, 126, 16}, 1, 1, 2)}) {
-      const testbench::ExampleRun run = dgemm_run(of, 24, level);
-      EXPECT_EQ(verdict(run, run_natively(run, 24)), "") << int(level) << " rows " << of.shape.rows;
-    }
+    for (const Dgemm::Problem& of : {problem({}, 1, 1, 1), problem({}, 2, 1, 3), problem({1, 8, 1}, 1, 3, 5),
+                                     problem({6, 16, 2}, 3, 2, 2), problem({24, 32, 4}, 1, 1, 2)})
+      expect(of, 24, level);
+    // One strip that computes, as many as the chip's, and more.
+    for (const int num_pes : {16, 96, 192}) expect(problem({12, 24, 4}, 1, 2, 3), num_pes, level);
   }
 }
 
 TEST(DgemmExample, WorkIsAMultiplyAndAnAddForEachProduct) {
-  // (2 x 24 x 8) x (3 x 6) x (4 x 5)
-  EXPECT_EQ(dgemm_run(problem({8, 6, 5}, 2, 3, 4), 24, cn::Level::x86_64_v2).work, 2.0 * 384 * 18 * 20);
+  // (2 x 16 x 2) x (4 x 6 x 3) x (16 x 4)
+  EXPECT_EQ(dgemm_run(problem({6, 16, 2}, 2, 3, 4), 24, cn::Level::x86_64_v2).work, 2.0 * 64 * 72 * 64);
 }
 
 TEST(DgemmExample, LevelsGiveTheSameBits) {
@@ -43,26 +49,32 @@ TEST(DgemmExample, LevelsGiveTheSameBits) {
 }
 
 TEST(DgemmExample, CheckNoticesOneWrongElement) {
-  const testbench::ExampleRun run = dgemm_run(problem({}, 1, 1, 2), 8, cn::Level::x86_64_v2);
-  std::vector<std::uint8_t> mono = run_natively(run, 8);
+  const testbench::ExampleRun run = dgemm_run(problem({}, 1, 1, 2), 16, cn::Level::x86_64_v2);
+  std::vector<std::uint8_t> mono = run_natively(run, 16);
   mono[mono.size() - 2] ^= 0x10;  // in the exponent of C's last element
   EXPECT_NE(verdict(run, mono).find("DGEMM: element ("), std::string::npos);
   EXPECT_NE(verdict(run, run.mono), "");  // C as it was before the run
 }
 
-TEST(DgemmExample, ShapeMustFitVectorsRegistersAndSram) {
-  const auto fault = [](Dgemm::Shape shape) -> std::string {
+TEST(DgemmExample, ShapeMustFitPathFeedersAndSram) {
+  const auto fault = [](Dgemm::Shape shape, int num_pes = 16) -> std::string {
+    testbench::NativeMachine machine(num_pes, 6144, 8);
     try {
-      run_natively(dgemm_run(problem(shape, 1, 1, 1), 8, cn::Level::x86_64_v2), 8);
+      const Dgemm dgemm(machine, examples::kernels(cn::Level::x86_64_v2), problem(shape, 1, 1, 1));
       return {};
     } catch (const std::exception& error) {
       return error.what();
     }
   };
-  EXPECT_EQ(fault({6, 3, 1}), "DGEMM rows: found 6, allowed is a positive multiple of 4");
-  EXPECT_EQ(fault({4, 4, 1}), "DGEMM columns: found 4, allowed is a positive multiple of 3");
-  EXPECT_EQ(fault({4, 3, 0}), "DGEMM depth: found 0, allowed is a positive multiple of 1");
-  EXPECT_NE(fault({64, 30, 1}).find("poly SRAM overflow: buffer 'C'"), std::string::npos);
+  EXPECT_EQ(fault({}), "");
+  EXPECT_EQ(fault({}, 8), "DGEMM: found 8 PEs, allowed are more than 8");
+  EXPECT_EQ(fault({6, 8, 4}), "DGEMM tiles: found 6, allowed is a positive multiple of 4");
+  EXPECT_EQ(fault({6, 8, 0}), "DGEMM chunk_tiles: found 0, allowed is a positive multiple of 1");
+  EXPECT_EQ(fault({6, 12, 2}), "DGEMM depth: found 12, allowed is a positive multiple of 8");
+  EXPECT_EQ(
+      fault({4, 16, 4}),
+      "DGEMM: found two chunks of 256 bytes in a feeder, allowed are together the 256 bytes that C has");
+  EXPECT_NE(fault({100, 8, 1}).find("poly SRAM overflow: buffer 'C'"), std::string::npos);
 }
 
 }  // namespace

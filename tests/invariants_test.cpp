@@ -78,6 +78,8 @@ std::vector<Variation> firmware_variations() {
   for (const int vertices : {4, 8, 64})
     variations.push_back({std::to_string(vertices) + " vertices a slot",
                           [=](RenderOptions& options) { options.program.slot_vertices = vertices; }});
+  variations.push_back({"shadow rays whichever way",
+                        [](RenderOptions& options) { options.program.cull_shadow_rays = false; }});
   variations.push_back({"one block of n 1 and short slots", [](RenderOptions& options) {
                           options.program.bin_blocks = 1;
                           options.program.slot_vertices = 4;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -49,6 +51,35 @@ TEST(Paper, SiliconIsTheDoubleBufferedRow) {
   EXPECT_NEAR(testbench::silicon_segments_per_second(Program::segments), 168350, 1);
   EXPECT_NEAR(testbench::silicon_segments_per_second(Program::direct), 75930, 1);
   EXPECT_NEAR(testbench::silicon_segments_per_second(Program::full), 75301, 1);
+}
+
+TEST(Paper, CellsAreTheNumbersOfTheTablesRowByRow) {
+  const auto cells = testbench::paper_cells();
+  ASSERT_EQ(cells.size(), 24u);
+  EXPECT_EQ(cells[0].name(), "segments, n = 0");
+  EXPECT_EQ(cells[4].name(), "direct, n = 1");
+  EXPECT_EQ(cells[23].name(), "full, both");
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    EXPECT_EQ(cells[i].seconds(), paper_rows()[i / 3].seconds[i % 3]) << cells[i].name();
+}
+
+TEST(Paper, ThreeCellsAreFittedAndTheirRepetitionsAreNotPredictions) {
+  std::vector<std::string> names;
+  for (const auto& cell : testbench::fitted_cells()) names.push_back(cell.name());
+  EXPECT_EQ(names, (std::vector<std::string>{"segments, n = 1", "segments, n = 0", "direct, n = 1"}));
+  std::set<std::string> fitted;
+  for (const auto& cell : testbench::paper_cells())
+    if (testbench::is_fitted(cell)) fitted.insert(cell.name());
+  EXPECT_EQ(fitted, (std::set<std::string>{"segments, n = 0", "segments, n = 1", "direct, n = 1",
+                                           "segments, none", "segments, both", "direct, both"}));
+}
+
+TEST(Paper, ProgramCastsAShadowRayForEverySegment) {
+  const path_tracer::ProgramConfig program = testbench::paper_program();
+  EXPECT_NO_THROW(path_tracer::validate(program));
+  EXPECT_FALSE(program.cull_shadow_rays);
+  EXPECT_EQ(program.bin_blocks, 8);
+  EXPECT_EQ(program.roulette_start, 8);
 }
 
 TEST(Paper, ProgramsHaveTheNamesOfTheCommandLine) {

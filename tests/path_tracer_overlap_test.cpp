@@ -218,6 +218,46 @@ TEST_P(Overlap, NorAHostThatReadsAtTheLastMoment) {
     EXPECT_EQ(with_overlap(small_program(GetParam(), n), 16, 0.0, false), expected) << n;
 }
 
+/// Copies of a kind, and how many of them were waited for by the very next call.
+struct Copies {
+  int all = 0;
+  int waited_for_at_once = 0;
+};
+
+Copies copies(const std::vector<std::string>& calls, const std::string& kind) {
+  Copies found;
+  for (std::size_t i = 0; i + 1 < calls.size(); ++i) {
+    if (calls[i].rfind(kind + " ", 0) != 0) continue;
+    ++found.all;
+    found.waited_for_at_once += calls[i + 1] == "wait " + calls[i].substr(kind.size() + 1);
+  }
+  return found;
+}
+
+/// "0-buffering simply means that each load or save operation was carried out when it occurred in the code"
+/// (section 4.1).
+TEST_P(Overlap, CopiesOfADirectionWithoutBuffersAreOverAtOnce) {
+  for (const auto& [loads, saves] : {std::pair(true, true), {true, false}, {false, true}, {false, false}}) {
+    SCOPED_TRACE(testing::Message() << "loads " << loads << " saves " << saves);
+    ProgramConfig config = small_program(GetParam(), 1);
+    config.buffer_loads = loads;
+    config.buffer_saves = saves;
+    const testbench::MonoImage image = testbench::make_mono_image(make_scene(), 16, config);
+    test_support::LateMachine machine(16, 6144, image.layout.total_bytes);
+    machine.on_signal = [&](cn::Semaphore semaphore) {
+      if (semaphore.index == HostSemaphores::kResultsReady.index)
+        machine.sem_signal(HostSemaphores::kResultsFree);
+    };
+    trace(machine, image, config);
+    const Copies loaded = copies(machine.calls, "m2p");
+    const Copies saved = copies(machine.calls, "p2m");
+    ASSERT_GT(loaded.all, 100);
+    ASSERT_GT(saved.all, 100);
+    EXPECT_EQ(loaded.waited_for_at_once == loaded.all, !loads);
+    EXPECT_EQ(saved.waited_for_at_once == saved.all, !saves);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Programs, Overlap,
                          testing::Values(Program::segments, Program::direct, Program::full),
                          [](const auto& test) {

@@ -60,6 +60,10 @@ Semaphore Machine::allocate_semaphore(const std::string& name) {
   return {static_cast<int>(semaphore_names_.size()) - 1};
 }
 
+void Machine::start_thread(int, const std::string& name, std::function<void()>) {
+  throw MachineFault("start of thread '" + name + "': this machine has one thread");
+}
+
 int Machine::count(const LaneMask& lanes) {
   issued_.clear();
   issued_.root().counts[InstructionClass::reduce] = 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ class MachineFault : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Of the thread that the firmware begins with; others may be above, below or equal.
+inline constexpr int kFirstThreadPriority = 0;
 
 /// The chip as firmware sees it: one control unit with its mono memory, a PE array with its poly memory, and
 /// the programmed I/O between them. What it costs, and when a transfer is over, is the implementation's
@@ -65,6 +69,19 @@ class Machine {
 
   virtual void sem_signal(Semaphore semaphore) = 0;
   virtual void sem_wait(Semaphore semaphore) = 0;
+
+  /// Starts a hardware thread that runs `body`. The control unit has one instruction stream: a thread has it
+  /// until it waits on a semaphore that is not signalled; then the ready thread of the highest priority runs,
+  /// the one started first among equals. Greater numbers are higher; the firmware's first thread has
+  /// kFirstThreadPriority. A thread of higher priority than the running one takes over as soon as it is
+  /// ready, between two kernels, batches of mono instructions, requests or semaphore operations; a new thread
+  /// may do so within this call, which itself takes no time.
+  ///
+  /// The run is over when all threads are. To wait for one, let the end of its `body` signal a semaphore.
+  /// What `body` refers to must live as long as it runs. Within Untimed no thread changes.
+  ///
+  /// Throws MachineFault when the machine has no thread left (csx600: control.threads).
+  virtual void start_thread(int priority, const std::string& name, std::function<void()> body);
 
   /// How many PEs hold true. A reduction that the control unit reads, with its cost.
   int count(const LaneMask& lanes);

@@ -185,6 +185,8 @@ class PolyArray {
   }
 
  private:
+  template <class>
+  friend class VectorStream;
   using Lane = typename poly<T>::Lane;
   static constexpr std::uint64_t kWords = 2;
 
@@ -214,6 +216,64 @@ class PolyArray {
   }
 
   int offset_bytes_ = 0;
+};
+
+/// Vectors that travel down the PE-to-PE path in registers, one PE a step. The path is a line: what its last
+/// `feeders` PEs hold in `fed` follows the vectors that the PEs before them started with, in the order of the
+/// PEs, place after place, so those PEs never run out. Feeders work with no vector themselves.
+template <class T>
+class VectorStream {
+ public:
+  /// @param own_at first of four elements that each PE but the feeders starts with
+  /// @param fed_at first of four elements for each `feeders` steps
+  VectorStream(const PolyArray<T>& own, int own_at, const PolyArray<T>& fed, int fed_at, int feeders)
+      : own_(own), own_at_(own_at), fed_(fed), fed_at_(fed_at), feeders_(feeders) {}
+
+  /// To be called before each `feeders` steps: a load that is enabled in the feeders only.
+  void feed() const {
+    issue(InstructionClass::enable, 2);
+    issue(InstructionClass::sram_vector_load, 4 * PolyArray<T>::kWords);
+  }
+
+  /// What the path has brought after so many steps, which are asked for one after the other from 0 on: that
+  /// is a load from `own`, each other one a step. A kernel may store to the places of `own` when it asks no
+  /// more: strips are executed in the order in which vectors leave them.
+  poly4<T> after(int steps) const {
+    if (steps == 0) {
+      issue(InstructionClass::sram_vector_load, 4 * PolyArray<T>::kWords);
+    } else {
+      issue(InstructionClass::swazzle_vector4);
+    }
+    return {element(0, steps), element(1, steps), element(2, steps), element(3, steps)};
+  }
+
+ private:
+  using Lane = typename poly<T>::Lane;
+
+  poly<T> element(int element, int steps) const {
+    const int first_feeder = strip.num_pes - feeders_;
+    const std::uint64_t* const own = own_.row(own_at_ + element);
+    const int last_source = strip.first_pe + kStripLanes - 1 + steps;
+    if (last_source < first_feeder) {
+      Lanes<Lane> words;  // from a row at any place: load_lanes wants a strip's first PE
+      std::memcpy(&words, own + strip.first_pe + steps, sizeof(words));
+      return poly<T>(words);
+    }
+    const auto brought = each_lane<std::uint64_t>([&](int lane) -> std::uint64_t {
+      const int pe = strip.first_pe + lane;
+      if (pe >= first_feeder) return 0;
+      if (pe + steps < first_feeder) return own[pe + steps];
+      const int behind = pe + steps - first_feeder;
+      return fed_.row(fed_at_ + behind / feeders_ * 4 + element)[first_feeder + behind % feeders_];
+    });
+    return poly<T>(bit_cast_lanes<Lane>(brought));
+  }
+
+  PolyArray<T> own_;
+  int own_at_;
+  PolyArray<T> fed_;
+  int fed_at_;
+  int feeders_;
 };
 
 }  // namespace cn

@@ -1,33 +1,46 @@
 #pragma once
 
-#include "firmware/examples/kernels.hpp"
+#include "firmware/cn/control.hpp"
+#include "firmware/examples/dgemm.hpp"
 
 namespace examples {
 
-/// Registers of a PE hold 16 doubles: 12 are a tile of C of 4 rows and 3 columns, 4 a piece of a column of A.
-/// B is mono: each of its elements is broadcast to all PEs as an operand. A tile's multiply-add comes back to
-/// the same sums after 12 cycles, later than the 8 of multiplier and adder together.
-inline void multiply_block(const MultiplyBlockArguments& arguments) {
+/// All 16 doubles of a PE's registers are in use: 8 are a tile of C, 4 a vector of B on its way along the
+/// path, 4 the two rows of A for two steps. Elements of a vector operand may all be the same register.
+inline void multiply_tiles(const MultiplyTilesArguments& arguments) {
   using Vector = cn::poly4<double>;
-  constexpr int kTileColumns = 3;
-  for (int column = 0; column < arguments.columns; column += kTileColumns) {
-    for (int row = 0; row < arguments.rows; row += 4) {
-      const auto place = [&](int j) { return cn::four_from((column + j) * arguments.rows + row); };
-      const auto a = [&](int k) { return arguments.a.load(cn::four_from(k * arguments.rows + row)); };
-      const auto b = [&](int k, int j) { return arguments.b[k * arguments.columns + column + j]; };
-      Vector sum[kTileColumns];
-      if (arguments.first) {
-        const Vector column_of_a = a(0);
-        for (int j = 0; j < kTileColumns; ++j) sum[j].become(column_of_a * b(0, j));
-      } else {
-        for (int j = 0; j < kTileColumns; ++j) sum[j].become(arguments.c.load(place(j)));
+  const cn::mask computes = cn::pe_num() < cn::poly<std::int32_t>(cn::strip.num_pes - Dgemm::kFeeders);
+  // Costs no instruction: the chip's first one for a sum that starts is a multiply, which takes as long as
+  // the multiply-add.
+  const Vector nothing(0.0, 0.0, 0.0, 0.0);
+  for (int tile = 0; tile < arguments.tiles; ++tile) {
+    const int place = arguments.first_tile + tile;
+    const cn::VectorStream<double> b(arguments.b_in_place, place * Dgemm::kTileColumns, arguments.b_fed,
+                                     tile * arguments.depth / Dgemm::kFeeders * Dgemm::kTileColumns,
+                                     Dgemm::kFeeders);
+    const auto of_c = [&](int row) {
+      return cn::four_from((place * Dgemm::kRows + row) * Dgemm::kTileColumns);
+    };
+    Vector sum[Dgemm::kRows];
+    for (int row = 0; row < Dgemm::kRows; ++row)
+      sum[row].become(arguments.first ? nothing : arguments.c.load(of_c(row)));
+    for (int k = 0; k < arguments.depth; k += 2) {
+      const Vector a = arguments.a.load(cn::four_from(k * Dgemm::kRows));
+      if (k % Dgemm::kFeeders == 0) b.feed();
+      for (int step = 0; step < 2; ++step) {
+        const Vector row_of_b = b.after(k + step);
+        for (int row = 0; row < Dgemm::kRows; ++row) {
+          const cn::poly<double>& factor = a[step * Dgemm::kRows + row];
+          const Vector factors(factor, factor, factor, factor);
+          sum[row].become(multiply_add(row_of_b, factors, sum[row]));
+        }
       }
-      for (int k = arguments.first ? 1 : 0; k < arguments.depth; ++k) {
-        const Vector column_of_a = a(k);
-        for (int j = 0; j < kTileColumns; ++j) sum[j].become(multiply_add(column_of_a, b(k, j), sum[j]));
-      }
-      for (int j = 0; j < kTileColumns; ++j) arguments.c.store(place(j), sum[j]);
     }
+    const Vector next_row_of_b = b.after(arguments.depth);
+    cn::poly_if(computes, [&] {
+      for (int row = 0; row < Dgemm::kRows; ++row) arguments.c.store(of_c(row), sum[row]);
+      arguments.b_in_place.store(cn::four_from(place * Dgemm::kTileColumns), next_row_of_b);
+    });
   }
 }
 

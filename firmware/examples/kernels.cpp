@@ -18,7 +18,7 @@ constexpr cn::Kernel<Arguments> kernel(const char* name) {
 
 const Kernels& EXAMPLES_KERNELS() {
   static constexpr Kernels table{
-      kernel<MultiplyBlockArguments, multiply_block>("multiply_block"),
+      kernel<MultiplyTilesArguments, multiply_tiles>("multiply_tiles"),
       kernel<SeedRandomArguments, seed_random>("seed_random"),
       kernel<SamplePayoffsArguments, sample_payoffs>("sample_payoffs"),
       kernel<FftPlacesArguments, fft_places>("fft_places"),

@@ -13,14 +13,15 @@ using cn::PolyArray;
 using cn::PolyField;
 using cn::PolyPointer;
 
-/// C += A B for the block that each PE holds.
-struct MultiplyBlockArguments {
-  PolyArray<double> a;        ///< depth columns of `rows`
-  const double* b = nullptr;  ///< mono: depth rows of `columns`
-  PolyArray<double> c;        ///< columns of `rows`
-  int rows = 0;               ///< a multiple of 4
-  int columns = 0;            ///< a multiple of 3
-  int depth = 0;
+/// C += A B for some tiles of 2 rows and 4 columns, B passing by.
+struct MultiplyTilesArguments {
+  PolyArray<double> a;           ///< [depth][row]
+  PolyArray<double> b_in_place;  ///< [tile][column]: where the path left off
+  PolyArray<double> b_fed;       ///< in the feeders: [tile of these][depth / feeders][column]
+  PolyArray<double> c;           ///< [tile][row][column]
+  int first_tile = 0;
+  int tiles = 0;
+  int depth = 0;       ///< a multiple of the feeders
   bool first = false;  ///< C starts from zero
 };
 
@@ -65,7 +66,7 @@ struct FftPlacesArguments {
 };
 
 struct Kernels {
-  cn::Kernel<MultiplyBlockArguments> multiply_block;
+  cn::Kernel<MultiplyTilesArguments> multiply_tiles;
   cn::Kernel<SeedRandomArguments> seed_random;
   cn::Kernel<SamplePayoffsArguments> sample_payoffs;
   cn::Kernel<FftPlacesArguments> fft_places;

@@ -7,6 +7,7 @@
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/error.hpp"
 #include "testbench/paper_alternatives.hpp"
 
 namespace testbench {
@@ -26,6 +27,9 @@ struct CalibrateCommand {
   std::string json;
 
   void run() const;
+
+ private:
+  void write_header(const Calibration& result) const;
 };
 
 void print_header() {
@@ -56,7 +60,14 @@ Json to_json(const Assumptions& assumptions, const Calibration& result) {
   return json;
 }
 
+void CalibrateCommand::write_header(const Calibration& result) const {
+  if (!result.converged)
+    throw RunError("--write: found no constants that meet the fitted cells; " + header + " is not written");
+  write_bytes_atomically(header, paper_constants_header(result.constants));
+}
+
 void CalibrateCommand::run() const {
+  require_files_of_their_own({{"--write", header}, {"--json", json}});
   if (!header.empty()) require_writable(header);
   if (!json.empty()) require_writable(json);
   CalibrationOptions fit = options;
@@ -78,8 +89,7 @@ void CalibrateCommand::run() const {
     print_row(assumptions, result);
     std::fflush(stdout);
     rows.push_back(to_json(assumptions, result));
-    if (&assumptions == &all.front() && !header.empty())
-      write_bytes_atomically(header, paper_constants_header(result.constants));
+    if (&assumptions == &all.front() && !header.empty()) write_header(result);
   }
   if (!json.empty()) write_bytes_atomically(json, rows.dump(2) + "\n");
 }

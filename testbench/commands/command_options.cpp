@@ -1,6 +1,7 @@
 #include "testbench/commands/command_options.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -30,6 +31,18 @@ FilmSize parse_size(const std::string& text) {
 }
 
 }  // namespace
+
+void require_files_of_their_own(const std::vector<OutputOption>& outputs) {
+  std::map<std::filesystem::path, std::string> option_of;
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) continue;
+    const auto [other, is_first] =
+        option_of.emplace(std::filesystem::absolute(path).lexically_normal(), option);
+    if (!is_first)
+      throw InputError(std::string(option) + ": found '" + path + "', which " + other->second +
+                       " writes too; allowed is a file of its own");
+  }
+}
 
 void SetOptions::add_to(CLI::App& command) {
   command.add_option("--set", settings_, "One parameter, key=value; may be repeated")

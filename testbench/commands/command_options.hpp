@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/path_tracer/kernels.hpp"
@@ -21,6 +22,12 @@ class SetOptions {
  private:
   std::vector<std::string> settings_;
 };
+
+/// An option that names a file to be written, and the file; "" where the option was not given.
+using OutputOption = std::pair<const char*, std::string>;
+
+/// Throws InputError when two options name one file.
+void require_files_of_their_own(const std::vector<OutputOption>& outputs);
 
 /// --chip and --set.
 class ChipOptions {

@@ -1,6 +1,4 @@
 #include <cstdio>
-#include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -66,18 +64,9 @@ void parse_cycles(const std::string& text, WaveOptions& waves) {
 }
 
 void RenderCommand::require_writable_outputs() const {
-  std::map<std::filesystem::path, std::string> option_of;
-  const std::pair<const char*, std::string> outputs[] = {
-      {"--exr", exr}, {"--png", png}, {"--stats", statistics}, {"--vcd", vcd}};
-  for (const auto& [option, path] : outputs) {
-    if (path.empty()) continue;
-    const auto [other, is_first] =
-        option_of.emplace(std::filesystem::absolute(path).lexically_normal(), option);
-    if (!is_first)
-      throw InputError(std::string(option) + ": found '" + path + "', which " + other->second +
-                       " writes too; allowed is a file of its own");
-    if (path != vcd) require_writable(path);
-  }
+  require_files_of_their_own({{"--exr", exr}, {"--png", png}, {"--stats", statistics}, {"--vcd", vcd}});
+  for (const std::string& path : {exr, png, statistics})
+    if (!path.empty()) require_writable(path);
 }
 
 path_tracer::Program program_named(const std::string& name) {

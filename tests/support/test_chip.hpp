@@ -13,7 +13,7 @@ inline model::ChipConfig test_chip(int pes = 8) {
   config.poly.sram_bytes = 1024;
   config.poly.code_quality_factor = 1.0;
   config.poly.cycles.fill(1.0);
-  config.control = {4096, 32, 25, 1, 0};
+  config.control = {4096, 32, 25, 1, 0, 8, 0};
   config.pio.arbitration = model::PioArbitration::strict_fifo;
   config.pio.queue_depth = 2;
   config.pio.setup_cycles = 100;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "firmware/cn/kernel.hpp"
+#include "firmware/cn/poly4.hpp"
 #include "testbench/native_machine.hpp"
 #include "tests/support/hazards.hpp"
 
@@ -32,6 +33,31 @@ void write_field(const FieldArguments& arguments) {
 
 constexpr cn::Kernel<FieldArguments> kReads{"reader", &cn::run_strips<FieldArguments, read_field>};
 constexpr cn::Kernel<FieldArguments> kWrites{"writer", &cn::run_strips<FieldArguments, write_field>};
+
+struct ArrayArguments {
+  cn::PolyArray<double> array;
+};
+
+void load_array(const ArrayArguments& arguments) {
+  arguments.array.load(cn::four_from(0));
+}
+void swazzle_array(const ArrayArguments& arguments) {
+  arguments.array.swazzle(cn::four_from(0), 1);
+}
+void store_array(const ArrayArguments& arguments) {
+  arguments.array.store(cn::four_from(0), {1.0, 1.0, 1.0, 1.0});
+}
+
+constexpr cn::Kernel<ArrayArguments> kLoadsArray{"loader", &cn::run_strips<ArrayArguments, load_array>};
+constexpr cn::Kernel<ArrayArguments> kSwazzlesArray{"swazzler",
+                                                    &cn::run_strips<ArrayArguments, swazzle_array>};
+constexpr cn::Kernel<ArrayArguments> kStoresArray{"storer", &cn::run_strips<ArrayArguments, store_array>};
+
+LaneMask only(int pe) {
+  LaneMask pes;
+  pes.set(pe, true);
+  return pes;
+}
 
 class HazardChecker : public testing::Test {
  protected:
@@ -122,6 +148,24 @@ TEST_F(HazardChecker, DisabledPesTouchNothing) {
   run(kReads, a.offset_bytes, 5);  // disabled within the kernel
   run(kWrites, a.offset_bytes, 5);
   expect_parts(hazard([&] { run(kReads, a.offset_bytes, 4); }), {"of PE 4"});
+}
+
+TEST_F(HazardChecker, VectorAccessesAreSeen) {
+  const ArrayArguments array{cn::PolyArray<double>(a)};
+  save({a.offset_bytes + 24, 8}, 0, s, only(9));
+  machine.run(kLoadsArray, array, LaneMask::first(kPes));
+  machine.run(kStoresArray, array, only(8));
+  expect_parts(hazard([&] { machine.run(kStoresArray, array, only(9)); }),
+               {"'storer' writes 'buffer a'", "of PE 9", "still reads"});
+}
+
+TEST_F(HazardChecker, WhatTravelsIsReadWhereItComesFrom) {
+  const ArrayArguments array{cn::PolyArray<double>(a)};
+  load({a.offset_bytes + 24, 8}, 0, s, only(7));
+  machine.run(kLoadsArray, array, only(8));
+  machine.run(kSwazzlesArray, array, only(7));  // gets PE 6's
+  expect_parts(hazard([&] { machine.run(kSwazzlesArray, array, only(8)); }),
+               {"'swazzler' reads 'buffer a'", "of PE 7", "still writes"});
 }
 
 TEST_F(HazardChecker, WaitsTellInTheOrderOfOneDirection) {

@@ -157,6 +157,7 @@ class PolyArray {
 
   poly4<T> load(const Indices4& at) const {
     issue(InstructionClass::sram_vector_load, 4 * kWords);
+    for (const int index : at) observe_sram(Access::read, span(index));
     return {element(at[0], 0), element(at[1], 0), element(at[2], 0), element(at[3], 0)};
   }
 
@@ -176,6 +177,7 @@ class PolyArray {
   /// does not overlap.
   void store(const Indices4& at, const poly4<T>& value) const {
     issue(InstructionClass::sram, 4 * kWords);
+    for (const int index : at) observe_sram(Access::write, span(index));
     for (int e = 0; e < 4; ++e) {
       std::uint64_t* const place = row(at[std::size_t(e)]) + strip.first_pe;
       store_lanes(place, select_lanes(strip.enabled, value[e].lanes(), load_lanes<Lane>(place)));
@@ -188,6 +190,7 @@ class PolyArray {
   using Lane = typename poly<T>::Lane;
   static constexpr std::uint64_t kWords = 2;
 
+  PolySpan span(int index) const { return {offset_bytes_ + index * int{sizeof(T)}, int{sizeof(T)}}; }
   std::uint64_t* row(int index) const {
     return strip.poly_words + std::size_t(offset_bytes_ / 8 + index) * std::size_t(strip.num_pes);
   }
@@ -196,10 +199,20 @@ class PolyArray {
     if (steps == 0) return poly<T>(load_lanes<Lane>(words + strip.first_pe));
     const auto travelled = each_lane<std::uint64_t>([&](int lane) {
       const int pe = strip.first_pe + lane;
-      const int from = pe - steps;
-      return words[from >= 0 && from < strip.num_pes ? from : pe];
+      const int from = pe - steps >= 0 && pe - steps < strip.num_pes ? pe - steps : pe;
+      observe_travel(index, from, lane);
+      return words[from];
     });
     return poly<T>(bit_cast_lanes<Lane>(travelled));
+  }
+
+  /// Tells the observer, if there is one, that an enabled PE gets what another one reads.
+  void observe_travel(int index, int from_pe, int to_lane) const {
+    if constexpr (kObservedSram) {
+      if (strip.observer == nullptr || (mask_bits(strip.enabled) >> to_lane & 1) == 0) return;
+      strip.observer->touches_poly(Access::read, span(index), from_pe / kStripLanes * kStripLanes,
+                                   1u << from_pe % kStripLanes);
+    }
   }
 
   int offset_bytes_ = 0;

@@ -80,4 +80,7 @@ struct Kernels {
 
 const Kernels& kernels(cn::Level level);
 
+/// The same, built to report their SRAM accesses to a cn::AccessObserver; for every x86-64 machine.
+const Kernels& observed_kernels();
+
 }  // namespace examples

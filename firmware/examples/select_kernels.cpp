@@ -5,6 +5,7 @@ namespace examples {
 const Kernels& kernels_x86_64_v2();
 const Kernels& kernels_x86_64_v3();
 const Kernels& kernels_x86_64_v4();
+const Kernels& kernels_observed();
 
 const Kernels& kernels(cn::Level level) {
   switch (level) {
@@ -16,6 +17,10 @@ const Kernels& kernels(cn::Level level) {
       break;
   }
   return kernels_x86_64_v2();
+}
+
+const Kernels& observed_kernels() {
+  return kernels_observed();
 }
 
 }  // namespace examples

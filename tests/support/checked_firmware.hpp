@@ -18,10 +18,8 @@ struct Mutation {
 };
 
 struct CheckedRun {
-  std::string fault;  ///< empty when the firmware came to its end
-  /// Numbers of the waits for transfers, in timed work, that the firmware cannot do without: up to the last
-  /// on a semaphore that ends a transfer with data. What comes after has nothing to wait for.
-  std::vector<int> waits;
+  std::string fault;           ///< empty when the firmware came to its end
+  std::vector<int> waits;      ///< BrokenMachine::needed_waits()
   std::uint64_t requests = 0;  ///< that moved data
 };
 

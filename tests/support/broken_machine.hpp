@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "testbench/native_machine.hpp"
+
+namespace test_support {
+
+/// A machine on which one wait for a transfer is left out.
+class BrokenMachine : public testbench::NativeMachine {
+ public:
+  /// @param dropped_wait this wait for a transfer returns at once and takes no signal; the first is 0, -1
+  /// none
+  BrokenMachine(int num_pes, int poly_bytes, std::uint64_t mono_bytes, int dropped_wait)
+      : NativeMachine(num_pes, poly_bytes, mono_bytes), dropped_wait_(dropped_wait) {}
+
+  /// Waits on semaphores up to this one are not for transfers.
+  void spare_semaphores_to(cn::Semaphore last) { spared_ = last.index; }
+
+  void sem_wait(cn::Semaphore semaphore) override {
+    const bool for_transfer = semaphore.index > spared_;
+    if (for_transfer && note_wait(waits_[std::size_t(semaphore.index)]) && next_wait_++ == dropped_wait_)
+      return;
+    NativeMachine::sem_wait(semaphore);
+  }
+  void timed(bool on) override {
+    timed_ = on;
+    NativeMachine::timed(on);
+  }
+  /// Numbers of the waits in timed work that the firmware cannot do without: up to the last on a semaphore
+  /// that ends a transfer with data. What comes after has nothing to wait for.
+  const std::vector<int>& needed_waits() const { return needed_waits_; }
+
+ protected:
+  void start_transfer(const cn::Transfer& transfer) override {
+    waits_[std::size_t(transfer.done.index)].moves_data.push_back(transfer.enabled.any());
+    NativeMachine::start_transfer(transfer);
+  }
+
+ private:
+  struct Waits {
+    std::deque<bool> moves_data;  ///< a transfer that was not waited for; signals come in their order
+    std::vector<int> perhaps_needed;
+  };
+
+  /// Whether it counts.
+  bool note_wait(Waits& waits) {
+    if (waits.moves_data.empty()) return false;  // the machine stops it
+    const bool moved_data = waits.moves_data.front();
+    waits.moves_data.pop_front();
+    if (!timed_) return false;
+    waits.perhaps_needed.push_back(next_wait_);
+    if (!moved_data) return true;
+    needed_waits_.insert(needed_waits_.end(), waits.perhaps_needed.begin(), waits.perhaps_needed.end());
+    waits.perhaps_needed.clear();
+    return true;
+  }
+
+  int dropped_wait_;
+  int spared_ = -1;
+  int next_wait_ = 0;
+  std::array<Waits, kSemaphores> waits_;
+  std::vector<int> needed_waits_;
+  bool timed_ = true;
+};
+
+}  // namespace test_support

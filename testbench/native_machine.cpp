@@ -5,7 +5,17 @@
 namespace testbench {
 
 NativeMachine::NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes)
-    : Machine(num_pes, poly_bytes_per_pe), mono_(mono_bytes) {}
+    : Machine(num_pes, poly_bytes_per_pe),
+      mono_(mono_bytes),
+      threads_(*this, [this](int semaphore) { return semaphores_.at(std::size_t(semaphore)) > 0; }) {}
+
+void NativeMachine::run_firmware(const std::function<void(cn::Machine&)>& firmware) {
+  threads_.run([&] { firmware(*this); });
+}
+
+void NativeMachine::start_thread(int priority, const std::string& name, std::function<void()> body) {
+  threads_.start(priority, name, std::move(body));
+}
 
 void NativeMachine::on_signal(cn::Semaphore semaphore, std::function<void()> service) {
   services_.at(std::size_t(semaphore.index)) = std::move(service);
@@ -26,7 +36,7 @@ void NativeMachine::timed(bool on) {
 
 void NativeMachine::sem_wait(cn::Semaphore semaphore) {
   int& count = semaphores_.at(std::size_t(semaphore.index));
-  if (count == 0)
+  if (count == 0 && !threads_.wait(semaphore.index))
     throw cn::MachineFault("wait on semaphore '" + semaphore_name(semaphore) + "' that nothing will signal");
   --count;
   if (access_observer() != nullptr) access_observer()->waited(semaphore);

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "firmware/cn/machine.hpp"
+#include "testbench/native_threads.hpp"
 
 namespace testbench {
 
 /// cn::Machine without a clock: transfers are instant, nothing costs anything. The functional reference of
-/// the tests and the fast preview.
+/// the tests and the fast preview. A thread runs until it waits for a semaphore without a signal.
 class NativeMachine : public cn::Machine {
  public:
   NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes);
@@ -20,6 +21,10 @@ class NativeMachine : public cn::Machine {
   /// The host's answer to a signal: runs at once, on the firmware's thread.
   void on_signal(cn::Semaphore semaphore, std::function<void()> service);
 
+  /// Runs firmware until all its threads are over. Firmware of one thread may also be called as it is.
+  void run_firmware(const std::function<void(cn::Machine&)>& firmware);
+
+  void start_thread(int priority, const std::string& name, std::function<void()> body) override;
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;
   void issue_mono(std::uint64_t) override {}
@@ -40,6 +45,7 @@ class NativeMachine : public cn::Machine {
   std::vector<std::uint8_t> mono_;
   std::array<int, kSemaphores> semaphores_{};
   std::array<std::function<void()>, kSemaphores> services_;
+  NativeThreads threads_;
 };
 
 }  // namespace testbench

@@ -80,14 +80,13 @@ TEST(MonoImage, LightsAreChosenByTheirPower) {
   EXPECT_EQ(vector(dim.edge1), glm::dvec3(2, 0, 0));
   EXPECT_EQ(vector(dim.edge2), glm::dvec3(0, 2, 0));
   EXPECT_EQ(dim.face, 0);
-  const auto expect_normal_over_pdf = [](const LightRecord& light, const glm::dvec3& expected) {
-    EXPECT_LT(glm::length(vector(light.normal_over_pdf) - expected), 1e-14);
-  };
-  expect_normal_over_pdf(dim, {0, 0, 2.0 / (6.0 / 18.0)});  // area / probability
+  EXPECT_EQ(vector(dim.normal), glm::dvec3(0, 0, 1));
+  EXPECT_DOUBLE_EQ(dim.inverse_pdf, 2.0 / (6.0 / 18.0));  // area / probability
   const auto bright = record(image, image.layout.lights, 1);
   EXPECT_EQ(vector(bright.vertex), glm::dvec3(0, 7, 0));
   EXPECT_EQ(bright.face, 2);
-  expect_normal_over_pdf(bright, {0, 1.0 / (12.0 / 18.0), 0});
+  EXPECT_EQ(vector(bright.normal), glm::dvec3(0, 1, 0));
+  EXPECT_DOUBLE_EQ(bright.inverse_pdf, 1.0 / (12.0 / 18.0));
 }
 
 /// A square light of two triangles, a lone triangle, and a parallelogram that is no rectangle.
@@ -124,7 +123,7 @@ TEST(MonoImage, HalvesOfARectangleAreOneLightWhenSampledBySolidAngle) {
   EXPECT_DOUBLE_EQ(record(image, image.layout.light_cdf, 0), 6 / 8.5);
   for (int light = 0; light < 4; ++light) {
     const auto found = record(image, image.layout.lights, light);
-    EXPECT_NEAR(found.emission_over_pdf.x, 8.5, 1e-12);
+    EXPECT_NEAR(found.inverse_pdf, 8.5, 1e-12);
     if (light > 0) {
       EXPECT_EQ(found.shape, std::int32_t(path_tracer::LightShape::triangle));
     }

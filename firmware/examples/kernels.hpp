@@ -40,6 +40,14 @@ struct SamplePayoffsArguments {
   double diffusion = 0;  ///< volatility sqrt(maturity)
 };
 
+/// y = factor x + y
+struct ScaleAndAddArguments {
+  PolyArray<double> x;
+  PolyArray<double> y;
+  double factor = 0;
+  int elements = 0;  ///< a multiple of 4
+};
+
 /// A complex number as SRAM and mono memory hold it.
 struct Complex {
   float real = 0;
@@ -68,6 +76,7 @@ struct Kernels {
   cn::Kernel<MultiplyBlockArguments> multiply_block;
   cn::Kernel<SeedRandomArguments> seed_random;
   cn::Kernel<SamplePayoffsArguments> sample_payoffs;
+  cn::Kernel<ScaleAndAddArguments> scale_and_add;
   cn::Kernel<FftPlacesArguments> fft_places;
   cn::Kernel<FftArguments> fft_local;
   cn::Kernel<FftArguments> fft_twiddle;

@@ -13,7 +13,7 @@ namespace {
 using examples::Stream;
 
 constexpr int kPes = 96;
-constexpr Stream::Problem kProblem{{0}, {1 << 20}, 3.0, 9, 80};
+constexpr Stream::Problem kProblem{{0}, {1 << 20}, 0.75, 300, 9, 80};
 constexpr std::size_t kElements = std::size_t(kPes) * 9 * 80;
 
 enum class Form { alone, with_threads };
@@ -27,7 +27,8 @@ std::vector<double> input(int array) {
 std::vector<double> expected() {
   std::vector<double> y = input(1);
   const std::vector<double> x = input(0);
-  for (std::size_t i = 0; i < kElements; ++i) y[i] += kProblem.factor * x[i];  // exact
+  for (std::size_t i = 0; i < kElements; ++i)
+    for (int step = 0; step < kProblem.steps; ++step) y[i] = y[i] * kProblem.factor + x[i];
   return y;
 }
 
@@ -82,10 +83,12 @@ TEST_F(StreamExample, ThreadsHideTheKernelsBehindTheCopies) {
   RecordProperty("alone_cycles", std::to_string(alone.total()));
   RecordProperty("with_threads_cycles", std::to_string(with_threads.total()));
   EXPECT_EQ(with_threads[model::CycleCause::poly], alone[model::CycleCause::poly]);
-  // All kernels but one, at which the engine may have nothing to do, and not more than all.
+  // Copies take longer than kernels here. The engine has nothing to do in the first kernel at most, and in
+  // the last.
   const auto hidden = alone.exposed_pio() - with_threads.exposed_pio();
-  EXPECT_GT(hidden, alone[model::CycleCause::poly] * 7 / 9);
-  EXPECT_LT(with_threads.total(), alone.total());
+  EXPECT_GT(alone.exposed_pio(), alone[model::CycleCause::poly]);
+  EXPECT_GE(hidden, alone[model::CycleCause::poly] * 7 / 9);
+  EXPECT_LE(hidden, alone[model::CycleCause::poly]);
 }
 
 }  // namespace

@@ -40,11 +40,12 @@ struct SamplePayoffsArguments {
   double diffusion = 0;  ///< volatility sqrt(maturity)
 };
 
-/// y = factor x + y
+/// y = factor y + x, again and again
 struct ScaleAndAddArguments {
   PolyArray<double> x;
   PolyArray<double> y;
   double factor = 0;
+  int steps = 0;
   int elements = 0;  ///< a multiple of 4
 };
 

@@ -70,7 +70,7 @@ void Stream::load(int block) {
 void Stream::compute(int block) {
   const ScaleAndAddArguments arguments{PolyArray<double>(x_[block % kBuffers]),
                                        PolyArray<double>(y_[block % kBuffers]), problem_.factor,
-                                       problem_.elements};
+                                       problem_.steps, problem_.elements};
   machine_.run(kernels_.scale_and_add, arguments, all_);
 }
 

@@ -5,15 +5,16 @@
 
 namespace examples {
 
-/// y = factor x + y over long arrays: little to compute, much to move. Alone it waits for each copy; with a
-/// hardware thread that loads and one that saves, the same plain code in each of the three overlaps copies
-/// and computation. The results are the same.
+/// y = factor y + x for long arrays, `steps` times: the more steps, the more there is to compute for what is
+/// moved. Alone it waits for each copy; with a hardware thread that loads and one that saves, the same plain
+/// code in each of the three overlaps copies and computation. The results are the same.
 class Stream {
  public:
   struct Problem {
     cn::MonoPointer<double> x;  ///< `blocks` x `elements` for each PE, one after the other
     cn::MonoPointer<double> y;  ///< as many; is overwritten
     double factor = 0;
+    int steps = 0;
     int blocks = 0;
     int elements = 0;  ///< of a PE in a block, a multiple of 4
   };
@@ -26,7 +27,9 @@ class Stream {
   void run_with_threads();
 
  private:
-  static constexpr int kBuffers = 2;
+  /// One is computed, one is saved and one loaded. With two, the one whose save ends amid a kernel would be
+  /// loaded after it: threads change between kernels.
+  static constexpr int kBuffers = 3;
 
   void load(int block);
   void compute(int block);

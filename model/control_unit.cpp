@@ -238,7 +238,7 @@ void ControlUnit::wait_for_signal(cn::Semaphore semaphore) {
   const CycleCause cause = cause_of_wait(semaphore);
   std::optional<Cycles> at = semaphore_file_.take(semaphore.index);
   if (!at) report_begin(cause, semaphore.index);
-  // Nobody can queue another request while this thread waits, so the engine may decide on and on.
+  // Nobody can queue another request while the only thread waits, so the engine may decide on and on.
   while (!at && serve_next_request()) at = semaphore_file_.take(semaphore.index);
   if (!at) throw cn::MachineFault(deadlock());
   if (*at > now_) spend(cause, *at - now_, semaphore.index);

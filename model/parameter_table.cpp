@@ -229,9 +229,7 @@ void declare_control(Parameters& table) {
                                                     "exist [S15c], number assumed [reference, section 1]"));
   table.push_back(integer<group, &Control::thread_switch_cycles>(
       "control.thread_switch_cycles", "cycles", 0, {0, kMaxCycles}, assumed,
-      "switch from one hardware thread to another, when the running one waits on a semaphore or one of "
-      "higher priority "
-      "is ready [reference, section 1]"));
+      "switch to another thread: when one waits, or a higher priority is ready [reference, section 1]"));
 }
 
 void declare_pio(Parameters& table) {
@@ -390,6 +388,7 @@ const std::vector<ParameterSource>& parameter_sources() {
       {"S11", "heise, ISC'08, CSX700"},
       {"S13", "Nishikawa et al., Performance Analysis of ClearSpeed's CSX600 Interconnects, ISPA 2009"},
       {"S13b", "Nishikawa et al., analytical network performance model of the CSX600, JSA 57(1), 2011"},
+      {"S15c", "US patent 7,966,475, threads and their scheduler"},
       {"S15e", "US patent 7,802,079, scoreboard and enable stack"},
       {"S15g", "US patent 7,363,472, access indicators"},
       {"JESD79-2", "JEDEC, DDR2 SDRAM Specification"}};

@@ -5,6 +5,7 @@
 #include "firmware/examples/dgemm_kernel.hpp"
 #include "firmware/examples/fft_kernels.hpp"
 #include "firmware/examples/monte_carlo_kernels.hpp"
+#include "firmware/examples/stream_kernel.hpp"
 
 namespace examples {
 namespace {
@@ -21,6 +22,7 @@ const Kernels& EXAMPLES_KERNELS() {
       kernel<MultiplyTilesArguments, multiply_tiles>("multiply_tiles"),
       kernel<SeedRandomArguments, seed_random>("seed_random"),
       kernel<SamplePayoffsArguments, sample_payoffs>("sample_payoffs"),
+      kernel<ScaleAndAddArguments, scale_and_add>("scale_and_add"),
       kernel<FftPlacesArguments, fft_places>("fft_places"),
       kernel<FftArguments, fft_local>("fft_local"),
       kernel<FftArguments, fft_twiddle>("fft_twiddle"),

@@ -41,6 +41,15 @@ struct SamplePayoffsArguments {
   double diffusion = 0;  ///< volatility sqrt(maturity)
 };
 
+/// y = factor y + x, again and again
+struct ScaleAndAddArguments {
+  PolyArray<double> x;
+  PolyArray<double> y;
+  double factor = 0;
+  int steps = 0;
+  int elements = 0;  ///< a multiple of 4
+};
+
 /// A complex number as SRAM and mono memory hold it.
 struct Complex {
   float real = 0;
@@ -69,6 +78,7 @@ struct Kernels {
   cn::Kernel<MultiplyTilesArguments> multiply_tiles;
   cn::Kernel<SeedRandomArguments> seed_random;
   cn::Kernel<SamplePayoffsArguments> sample_payoffs;
+  cn::Kernel<ScaleAndAddArguments> scale_and_add;
   cn::Kernel<FftPlacesArguments> fft_places;
   cn::Kernel<FftArguments> fft_local;
   cn::Kernel<FftArguments> fft_twiddle;

@@ -53,6 +53,21 @@ constexpr cn::Kernel<ArrayArguments> kSwazzlesArray{"swazzler",
                                                     &cn::run_strips<ArrayArguments, swazzle_array>};
 constexpr cn::Kernel<ArrayArguments> kStoresArray{"storer", &cn::run_strips<ArrayArguments, store_array>};
 
+struct StreamArguments {
+  cn::PolyArray<double> own;
+  cn::PolyArray<double> fed;
+};
+
+/// Of the last eight PEs, which feed.
+void take_one_step(const StreamArguments& arguments) {
+  const cn::VectorStream<double> stream(arguments.own, 0, arguments.fed, 0, 8);
+  stream.after(0);
+  stream.after(1);
+}
+
+constexpr cn::Kernel<StreamArguments> kTakesOneStep{"stream",
+                                                    &cn::run_strips<StreamArguments, take_one_step>};
+
 LaneMask only(int pe) {
   LaneMask pes;
   pes.set(pe, true);
@@ -166,6 +181,21 @@ TEST_F(HazardChecker, WhatTravelsIsReadWhereItComesFrom) {
   machine.run(kSwazzlesArray, array, only(7));  // gets PE 6's
   expect_parts(hazard([&] { machine.run(kSwazzlesArray, array, only(8)); }),
                {"'swazzler' reads 'buffer a'", "of PE 7", "still writes"});
+}
+
+TEST_F(HazardChecker, AStreamIsReadFromNeighboursAndFeeders) {
+  const StreamArguments stream{cn::PolyArray<double>(a), cn::PolyArray<double>(b)};
+  load(b, 0, s, only(8));
+  machine.run(kTakesOneStep, stream, only(6));
+  expect_parts(hazard([&] { machine.run(kTakesOneStep, stream, only(7)); }),
+               {"'stream' reads 'buffer b'", "of PE 8"});
+  machine.sem_wait(s);
+  model::HazardChecker fresh(machine);
+  machine.set_access_observer(&fresh);
+  load(a, 0, s, only(6));
+  machine.run(kTakesOneStep, stream, only(7));
+  expect_parts(hazard([&] { machine.run(kTakesOneStep, stream, only(5)); }),
+               {"'stream' reads 'buffer a'", "of PE 6"});
 }
 
 TEST_F(HazardChecker, WaitsTellInTheOrderOfOneDirection) {

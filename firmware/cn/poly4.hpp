@@ -251,6 +251,7 @@ class VectorStream {
   using Lane = typename poly<T>::Lane;
 
   poly<T> element(int element, int steps) const {
+    observe_sources(element, steps);
     const int first_feeder = strip.num_pes - feeders_;
     const std::uint64_t* const own = own_.row(own_at_ + element);
     const int last_source = strip.first_pe + kStripLanes - 1 + steps;
@@ -267,6 +268,22 @@ class VectorStream {
       return fed_.row(fed_at_ + behind / feeders_ * 4 + element)[first_feeder + behind % feeders_];
     });
     return poly<T>(bit_cast_lanes<Lane>(brought));
+  }
+
+  void observe_sources(int element, int steps) const {
+    if constexpr (kObservedSram) {
+      const int first_feeder = strip.num_pes - feeders_;
+      for (int lane = 0; lane < kStripLanes && strip.first_pe + lane < first_feeder; ++lane) {
+        const int from = strip.first_pe + lane + steps;
+        const int behind = from - first_feeder;
+        if (behind < 0) {
+          own_.observe_travel(own_at_ + element, from, lane);
+        } else {
+          fed_.observe_travel(fed_at_ + behind / feeders_ * 4 + element, first_feeder + behind % feeders_,
+                              lane);
+        }
+      }
+    }
   }
 
   PolyArray<T> own_;

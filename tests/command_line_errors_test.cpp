@@ -105,7 +105,7 @@ TEST_F(CommandLineErrors, Chip) {
 
 TEST_F(CommandLineErrors, Memory) {
   for (const Words& how : {Words{}, Words{"--native"}}) {
-    Words arguments = {"--set", "ddr.size_bytes=1048576"};
+    Words arguments = {"--set", "ddr.size_bytes=1048576", "--slot-vertices", "64"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     expect_render_error(arguments, {"bytes of mono memory", "ddr.size_bytes", "1048576"});
   }

@@ -22,10 +22,14 @@ using testbench::Scene;
 /// Found on this small film, on which single PEs and drained bins weigh more than in a real run: 0.38 % at
 /// most ...
 constexpr double kErrorPercent = 1.0;
-/// ... and 1.9 % where the memory's latency is twice or seven times the default. Loosely timed, a short
-/// scatter waits until the memory has opened its rows, though posted, and memory knows all addresses of a
-/// request at once; the one errs upwards, the other downwards.
-constexpr double kErrorPercentOfSlowRows = 2.0;
+/// ... and 2.3 % where requests wait for the memory more than for the engine: its latency is twice or seven
+/// times the default, or the engine takes no time for a PE. Loosely timed, a short scatter waits until the
+/// memory has opened its rows, though posted, and memory knows all addresses of a request at once; the one
+/// errs upwards, the other downwards. On 96 x 96 pixels with the paper's code: `csx600 bench timing`.
+constexpr double kErrorPercentBoundByMemory = 2.5;
+bool is_bound_by_memory(const model::ChipConfig& chip) {
+  return chip.ddr.page_miss_cycles > 60 || chip.pio.per_pe_cycles == 0;
+}
 
 class TimingAgreement : public test_support::SystemCFixture {
  protected:
@@ -60,7 +64,7 @@ TEST_F(TimingAgreement, HoldsForProgramsAndSweeps) {
   for (const testbench::TimingPoint& point :
        testbench::timing_points(test_support::render_options(Program::full, 8)))
     expect_agreement(scene, point.options, point.label,
-                     point.options.chip.ddr.page_miss_cycles > 60 ? kErrorPercentOfSlowRows : kErrorPercent);
+                     is_bound_by_memory(point.options.chip) ? kErrorPercentBoundByMemory : kErrorPercent);
 }
 
 TEST_F(TimingAgreement, HoldsForEveryArbitration) {

@@ -1,12 +1,15 @@
 #pragma once
 
-// Written by `csx600 calibrate --write model/paper_constants.hpp`: the only numbers of the model that are fitted to the
-// paper's Tables 1 and 2, on three of their 24 cells.
+// Written by `csx600 calibrate --write model/paper_constants.hpp`: the only numbers of the model that are
+// fitted to the paper's Tables 1 and 2, on three of their 24 cells.
 
 namespace model {
 
-inline constexpr const char* kPaperCodeQualityFactor = "7.9684";  // poly.code_quality_factor
-inline constexpr const char* kPaperPerPeCycles = "20";  // pio.per_pe_cycles
-inline constexpr const char* kPaperTransferCallCycles = "3065";  // control.transfer_call_cycles
+// poly.code_quality_factor
+inline constexpr const char* kPaperCodeQualityFactor = "7.9684";
+// pio.per_pe_cycles
+inline constexpr const char* kPaperPerPeCycles = "20";
+// control.transfer_call_cycles
+inline constexpr const char* kPaperTransferCallCycles = "3065";
 
 }  // namespace model

@@ -150,13 +150,14 @@ std::string paper_constants_header(const FittedConstants& constants) {
   std::string text =
       "#pragma once\n\n"
       "// Written by `csx600 calibrate --write model/paper_constants.hpp`: the only numbers of the model "
-      "that are fitted "
-      "to the\n// paper's Tables 1 and 2, on three of their 24 cells.\n\nnamespace model {\n\n";
+      "that are\n"
+      "// fitted to the paper's Tables 1 and 2, on three of their 24 cells.\n\n"
+      "namespace model {\n\n";
   const char* names[] = {"kPaperCodeQualityFactor", "kPaperPerPeCycles", "kPaperTransferCallCycles"};
   std::size_t i = 0;
   for (const auto& [key, value] : constants.settings())
     text +=
-        "inline constexpr const char* " + std::string(names[i++]) + " = \"" + value + "\";  // " + key + "\n";
+        "// " + std::string(key) + "\ninline constexpr const char* " + names[i++] + " = \"" + value + "\";\n";
   return text + "\n}  // namespace model\n";
 }
 

@@ -175,9 +175,11 @@ TEST(FittedConstants, AreSetAndWrittenAsTheSettingsSay) {
   EXPECT_EQ(chip.pio.per_pe_cycles, 19);
   EXPECT_EQ(chip.control.transfer_call_cycles, 3000);
   const std::string header = testbench::paper_constants_header(constants);
-  for (const char* line : {"kPaperCodeQualityFactor = \"7.2500\";  // poly.code_quality_factor",
-                           "kPaperPerPeCycles = \"19\";  // pio.per_pe_cycles",
-                           "kPaperTransferCallCycles = \"3000\";  // control.transfer_call_cycles"})
+  for (const char* line :
+       {"// poly.code_quality_factor\ninline constexpr const char* kPaperCodeQualityFactor = \"7.2500\";\n",
+        "// pio.per_pe_cycles\ninline constexpr const char* kPaperPerPeCycles = \"19\";\n",
+        "// control.transfer_call_cycles\ninline constexpr const char* kPaperTransferCallCycles = "
+        "\"3000\";\n"})
     EXPECT_NE(header.find(line), std::string::npos) << header;
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "model/annotated_delay.hpp"
+#include "model/payload.hpp"
 
 namespace model {
 
@@ -307,8 +308,7 @@ const void* ControlUnit::read_mono_bytes(cn::MonoAddress from, std::size_t bytes
 
 void ControlUnit::fetch_line(cn::MonoAddress line) {
   settle_pio(now_);
-  transaction_.set_command(tlm::TLM_READ_COMMAND);
-  send(line, line_.data(), line_.size());
+  send(tlm::TLM_READ_COMMAND, line, line_.data(), line_.size());
 }
 
 /// Write-through, and the control unit waits until the memory has it: what it tells the host must be there
@@ -322,18 +322,12 @@ void ControlUnit::write_mono_bytes(cn::MonoAddress to, const void* bytes, std::s
   settle_pio(now_);
   std::vector<std::uint8_t> data(size);
   std::memcpy(data.data(), bytes, size);
-  transaction_.set_command(tlm::TLM_WRITE_COMMAND);
-  send(to, data.data(), size);
+  send(tlm::TLM_WRITE_COMMAND, to, data.data(), size);
 }
 
-void ControlUnit::send(cn::MonoAddress address, std::uint8_t* data, std::size_t size) {
-  transaction_.set_address(address);
-  transaction_.set_data_ptr(data);
-  transaction_.set_data_length(static_cast<unsigned>(size));
-  transaction_.set_streaming_width(static_cast<unsigned>(size));
-  transaction_.set_byte_enable_ptr(nullptr);
-  transaction_.set_dmi_allowed(false);
-  transaction_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+void ControlUnit::send(tlm::tlm_command command, cn::MonoAddress address, std::uint8_t* data,
+                       std::size_t size) {
+  set_access(transaction_, command, address, data, size);
   report_begin(CycleCause::data_cache);
   const Cycles over = transport();
   if (transaction_.is_response_error())

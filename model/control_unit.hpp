@@ -128,7 +128,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void synchronise_for_observer();
   void forget_mono_pointer(sc_dt::uint64 start, sc_dt::uint64 end);
   void fetch_line(cn::MonoAddress line);
-  void send(cn::MonoAddress address, std::uint8_t* data, std::size_t size);
+  void send(tlm::tlm_command command, cn::MonoAddress address, std::uint8_t* data, std::size_t size);
   /// Sends transaction_ at now_; returns when it is over.
   Cycles transport();
   tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,

@@ -4,6 +4,7 @@
 
 #include "firmware/cn/machine.hpp"
 #include "model/annotated_delay.hpp"
+#include "model/payload.hpp"
 
 namespace model {
 namespace {
@@ -206,13 +207,7 @@ void DmaEngine::book_poly(Request& request, Cycles data_start) {
 
 void DmaEngine::prepare(tlm::tlm_command command, std::uint64_t address, std::uint64_t bytes) {
   if (run_data_.size() < bytes) run_data_.resize(bytes);
-  transaction_.set_command(command);
-  transaction_.set_address(address);
-  transaction_.set_data_ptr(run_data_.data());
-  transaction_.set_data_length(static_cast<unsigned int>(bytes));
-  transaction_.set_streaming_width(static_cast<unsigned int>(bytes));
-  transaction_.set_dmi_allowed(false);
-  transaction_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+  set_access(transaction_, command, address, run_data_.data(), bytes);
 }
 
 void DmaEngine::count(const PioEvent& event, Cycles pe_cycles) {

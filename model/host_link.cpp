@@ -5,6 +5,7 @@
 #include <string>
 
 #include "model/annotated_delay.hpp"
+#include "model/payload.hpp"
 
 namespace model {
 
@@ -57,11 +58,7 @@ Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, uns
 bool HostLink::move(tlm::tlm_command command, cn::MonoAddress address, unsigned char* data,
                     std::uint64_t bytes) {
   tlm::tlm_generic_payload transaction;
-  transaction.set_command(command);
-  transaction.set_address(address);
-  transaction.set_data_ptr(data);
-  transaction.set_data_length(static_cast<unsigned int>(bytes));
-  transaction.set_streaming_width(static_cast<unsigned int>(bytes));
+  set_access(transaction, command, address, data, bytes);
   return socket->transport_dbg(transaction) == bytes;
 }
 

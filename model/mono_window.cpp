@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "firmware/cn/machine.hpp"
+#include "model/payload.hpp"
 
 namespace model {
 namespace {
@@ -144,11 +145,7 @@ void MonoWindow::write(cn::MonoAddress address, const void* from, std::uint64_t 
 void MonoWindow::debug(tlm::tlm_command command, cn::MonoAddress address, std::uint8_t* data,
                        std::uint64_t bytes, tlm::tlm_fw_transport_if<>& memory) {
   tlm::tlm_generic_payload transaction;
-  transaction.set_command(command);
-  transaction.set_address(address);
-  transaction.set_data_ptr(data);
-  transaction.set_data_length(static_cast<unsigned int>(bytes));
-  transaction.set_streaming_width(static_cast<unsigned int>(bytes));
+  set_access(transaction, command, address, data, bytes);
   const unsigned int moved = memory.transport_dbg(transaction);
   if (moved == bytes) return;
   throw cn::MachineFault("debug access of the PIO engine: mono memory moved " + std::to_string(moved) +

@@ -5,6 +5,8 @@
 #include <tlm>
 #include <vector>
 
+#include "model/payload.hpp"
+
 namespace model {
 
 /// Generic payloads with room for their data, kept from one transaction to the next: once as many exist as
@@ -22,14 +24,7 @@ class PayloadPool : public tlm::tlm_mm_interface {
     free_.pop_back();
     if (packet.data.size() < bytes) packet.data.resize(bytes);
     packet.acquire();
-    packet.set_command(command);
-    packet.set_address(address);
-    packet.set_data_ptr(packet.data.data());
-    packet.set_data_length(static_cast<unsigned int>(bytes));
-    packet.set_streaming_width(static_cast<unsigned int>(bytes));
-    packet.set_byte_enable_ptr(nullptr);
-    packet.set_dmi_allowed(false);
-    packet.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+    set_access(packet, command, address, packet.data.data(), bytes);
     return packet;
   }
 

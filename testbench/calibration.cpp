@@ -97,19 +97,6 @@ glm::dvec3 newton_step(const glm::dmat3& slopes, const glm::dvec3& errors, const
   return glm::clamp(step, -limit, limit);
 }
 
-void judge(Calibration& result, const Assumptions& assumptions) {
-  const std::vector<PaperCell> cells = paper_cells();
-  int predicted = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (is_fitted(cells[i])) continue;
-    const double error = std::abs(result.seconds[i] / target_seconds(cells[i], assumptions) - 1);
-    result.mean_error += error;
-    result.worst_error = std::max(result.worst_error, error);
-    ++predicted;
-  }
-  result.mean_error /= predicted;
-}
-
 }  // namespace
 
 std::array<std::pair<const char*, std::string>, 3> FittedConstants::settings() const {
@@ -142,7 +129,9 @@ Calibration calibrate(const Assumptions& assumptions, const CalibrationOptions& 
   result.converged = largest(errors) < kConverged;
   result.constants = constants_at(x);
   result.seconds = fit.seconds(result.constants, paper_cells());
-  judge(result, assumptions);
+  const PredictionError error = prediction_error(result.seconds, assumptions.chips);
+  result.mean_error = error.mean;
+  result.worst_error = error.worst;
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "testbench/host_pc.hpp"
 
 #include "firmware/path_tracer/path_tracer.hpp"
+#include "model/payload.hpp"
 
 namespace testbench {
 
@@ -44,11 +45,7 @@ void HostPc::fetch_results() {
 void HostPc::fetch_untimed_results() {
   results_.fetch([this](cn::MonoAddress from, void* to, std::size_t bytes) {
     tlm::tlm_generic_payload transaction;
-    transaction.set_read();
-    transaction.set_address(from);
-    transaction.set_data_ptr(static_cast<unsigned char*>(to));
-    transaction.set_data_length(static_cast<unsigned>(bytes));
-    transaction.set_streaming_width(static_cast<unsigned>(bytes));
+    model::set_access(transaction, tlm::TLM_READ_COMMAND, from, static_cast<unsigned char*>(to), bytes);
     chip_.host_link.socket->transport_dbg(transaction);
   });
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbench/mono_image.hpp"
+
 namespace testbench {
 namespace {
 
@@ -85,9 +87,7 @@ std::vector<bool> light_pixels(const Scene& scene) {
   for (const Triangle& triangle : scene.triangles) {
     const Material& material = scene.materials[std::size_t(triangle.material)];
     if (material.emission == glm::dvec3(0.0)) continue;
-    const glm::dvec3 normal =
-        glm::cross(triangle.vertex[1] - triangle.vertex[0], triangle.vertex[2] - triangle.vertex[0]);
-    if (glm::dot(normal, scene.camera.position - triangle.vertex[0]) <= 0) continue;
+    if (glm::dot(area_normal(triangle), scene.camera.position - triangle.vertex[0]) <= 0) continue;
     mark(project(triangle, scene.camera, scene.film), scene.film, marked);
   }
   return marked;

@@ -1,6 +1,7 @@
 #include "testbench/paper.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace testbench {
 namespace {
@@ -26,6 +27,22 @@ std::string PaperCell::name() const {
   return std::string(program_name(program)) + ", " + paper_rows()[row].label;
 }
 
+path_tracer::ProgramConfig PaperCell::firmware(path_tracer::ProgramConfig base) const {
+  const PaperRow& of = paper_rows()[row];
+  base.program = program;
+  base.n = of.n;
+  base.buffer_loads = of.buffer_loads;
+  base.buffer_saves = of.buffer_saves;
+  return base;
+}
+
+bool PaperCell::is_same_run(const PaperCell& other) const {
+  const path_tracer::ProgramConfig a = firmware({});
+  const path_tracer::ProgramConfig b = other.firmware({});
+  return a.program == b.program && a.load_buffers() == b.load_buffers() &&
+         a.save_buffers() == b.save_buffers();
+}
+
 std::vector<PaperCell> paper_cells() {
   std::vector<PaperCell> cells;
   for (std::size_t row = 0; row < paper_rows().size(); ++row)
@@ -40,15 +57,28 @@ std::vector<PaperCell> fitted_cells() {
 }
 
 bool is_fitted(const PaperCell& cell) {
-  const PaperRow& row = paper_rows()[cell.row];
   const std::vector<PaperCell> fitted = fitted_cells();
-  return std::any_of(fitted.begin(), fitted.end(), [&](const PaperCell& other) {
-    const PaperRow& other_row = paper_rows()[other.row];
-    const bool buffered = row.n > 0 && (row.buffer_loads || row.buffer_saves);
-    const bool other_buffered = other_row.n > 0;
-    return other.program == cell.program && buffered == other_buffered &&
-           (!buffered || (row.n == other_row.n && row.buffer_loads && row.buffer_saves));
-  });
+  return std::any_of(fitted.begin(), fitted.end(),
+                     [&](const PaperCell& other) { return cell.is_same_run(other); });
+}
+
+PredictionError prediction_error(const std::vector<double>& seconds, int chips) {
+  PredictionError result;
+  const std::vector<PaperCell> cells = paper_cells();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (is_fitted(cells[i])) continue;
+    const double error = std::abs(seconds[i] / (cells[i].seconds() * chips) - 1);
+    result.mean += error;
+    result.worst = std::max(result.worst, error);
+    ++result.cells;
+  }
+  result.mean /= result.cells;
+  return result;
+}
+
+double radiance_share(const std::vector<double>& seconds) {
+  const double* const double_buffered = &seconds[kPaperPrograms.size() * kDoubleBufferedRow];
+  return 1 - double_buffered[std::size_t(Program::direct)] / double_buffered[std::size_t(Program::full)];
 }
 
 path_tracer::ProgramConfig paper_program() {
@@ -61,11 +91,6 @@ path_tracer::ProgramConfig paper_program() {
 
 double silicon_segments_per_second(Program program) {
   return 1e6 / paper_rows()[kDoubleBufferedRow].seconds[std::size_t(program)];
-}
-
-const char* program_name(Program program) {
-  static constexpr std::array<const char*, 3> kNames = {"segments", "direct", "full"};
-  return kNames[std::size_t(program)];
 }
 
 }  // namespace testbench

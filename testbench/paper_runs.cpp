@@ -1,5 +1,6 @@
 #include "testbench/paper_runs.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "testbench/processes.hpp"
@@ -8,21 +9,6 @@ namespace testbench {
 namespace {
 
 using Json = nlohmann::json;
-
-path_tracer::ProgramConfig program_of(const PaperCell& cell, path_tracer::ProgramConfig program) {
-  const PaperRow& row = paper_rows()[cell.row];
-  program.program = cell.program;
-  program.buffer_loads = row.buffer_loads;
-  program.buffer_saves = row.buffer_saves;
-  // Buffering nothing is n = 0 whatever n says.
-  program.n = row.buffer_loads || row.buffer_saves ? row.n : 0;
-  return program;
-}
-
-bool runs_alike(const path_tracer::ProgramConfig& a, const path_tracer::ProgramConfig& b) {
-  return a.program == b.program && a.load_buffers() == b.load_buffers() &&
-         a.save_buffers() == b.save_buffers();
-}
 
 double seconds_per_million_segments(const Scene& scene, const RenderOptions& options) {
   const RenderResult result = render_on_chip(scene, options);
@@ -34,19 +20,20 @@ double seconds_per_million_segments(const Scene& scene, const RenderOptions& opt
 std::vector<double> run_paper_cells(const Scene& scene, const RenderOptions& options,
                                     const std::vector<PaperCell>& cells, int at_once,
                                     const std::function<void(double)>& done) {
-  std::vector<RenderOptions> runs;
+  std::vector<PaperCell> runs;
   std::vector<std::size_t> run_of_cell;
   for (const PaperCell& cell : cells) {
-    RenderOptions of_cell = options;
-    of_cell.program = program_of(cell, options.program);
-    std::size_t run = 0;
-    while (run < runs.size() && !runs_alike(runs[run].program, of_cell.program)) ++run;
-    if (run == runs.size()) runs.push_back(of_cell);
-    run_of_cell.push_back(run);
+    const auto run = std::find_if(runs.begin(), runs.end(),
+                                  [&](const PaperCell& other) { return cell.is_same_run(other); });
+    run_of_cell.push_back(std::size_t(run - runs.begin()));
+    if (run == runs.end()) runs.push_back(cell);
   }
   std::vector<std::function<std::string()>> jobs;
-  for (const RenderOptions& run : runs)
-    jobs.emplace_back([&scene, &run] { return Json(seconds_per_million_segments(scene, run)).dump(); });
+  for (const PaperCell& run : runs) {
+    RenderOptions of_run = options;
+    of_run.program = run.firmware(options.program);
+    jobs.emplace_back([&scene, of_run] { return Json(seconds_per_million_segments(scene, of_run)).dump(); });
+  }
   const std::vector<std::string> results = run_in_processes(jobs, at_once, [&](int finished) {
     if (done) done(finished / double(jobs.size()));
   });

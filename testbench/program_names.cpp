@@ -2,6 +2,11 @@
 
 namespace testbench {
 
+const char* program_name(path_tracer::Program program) {
+  static constexpr const char* kNames[] = {"segments", "direct", "full"};
+  return kNames[std::size_t(program)];
+}
+
 const char* sampler_name(path_tracer::Sampler sampler) {
   return sampler == path_tracer::Sampler::sobol ? "sobol" : "philox";
 }

@@ -5,6 +5,7 @@
 namespace testbench {
 
 /// As the command line and the output files spell them.
+const char* program_name(path_tracer::Program program);
 const char* sampler_name(path_tracer::Sampler sampler);
 const char* light_sampling_name(path_tracer::LightSampling sampling);
 

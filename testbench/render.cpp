@@ -153,10 +153,4 @@ RenderResult render_natively(const Scene& scene, const RenderOptions& options,
   });
 }
 
-path_tracer::Level widest_level() {
-  if (__builtin_cpu_supports("x86-64-v4")) return path_tracer::Level::x86_64_v4;
-  if (__builtin_cpu_supports("x86-64-v3")) return path_tracer::Level::x86_64_v3;
-  return path_tracer::Level::x86_64_v2;
-}
-
 }  // namespace testbench

@@ -47,7 +47,6 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
 RenderResult render_natively(const Scene& scene, const RenderOptions& options,
                              const RenderProgress& progress = {});
 
-/// The widest level this machine executes.
-path_tracer::Level widest_level();
+using cn::widest_level;
 
 }  // namespace testbench

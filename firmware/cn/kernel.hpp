@@ -44,6 +44,12 @@ template <class Arguments, void (*program)(const Arguments&)>
   }
 }
 
+/// The kernel that runs `program`, for a table of entry points.
+template <class Arguments, void (*program)(const Arguments&)>
+constexpr Kernel<Arguments> kernel(const char* name) {
+  return {name, &run_strips<Arguments, program>};
+}
+
 /// Keeps one condition a PE beyond the kernel, for the control unit to count or to enable PEs of a transfer
 /// by. PEs that are not enabled read as false. `kept` must hold no bits of PEs that the kernel did not run
 /// for.

@@ -41,12 +41,12 @@ void IntersectionStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
-  const LaneMask segments = bin.live.without(bin.shadow);
+  const LaneMask segments = bin.segments();
   load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live);
   context_.loads.copy_m2p(step, block, to.surface.span(), context_.machine.places_in(bin.surface_place),
                           bin.hit_something);
   load_block(step, block, to.path, context_.layout.path_bin, segments);
-  if (context_.config.program == Program::segments) return;
+  if (!context_.config.casts_shadow_rays()) return;
   context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),
                           segments);
   load_block(step, block, to.lighting, context_.layout.lighting_bin, bin.shadow);
@@ -56,7 +56,7 @@ void IntersectionStage::process(std::uint64_t step, int block) {
   const Loads from = loads(step);
   const Saves to = saves(step);
   scatter(from, to, block);
-  if (context_.config.program != Program::segments) illuminate(from, to, block);
+  if (context_.config.casts_shadow_rays()) illuminate(from, to, block);
 }
 
 void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
@@ -72,13 +72,13 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   arguments.seed = context_.config.seed;
   arguments.roulette_start = context_.config.roulette_start;
   arguments.max_survival = context_.config.max_survival;
-  arguments.casts_shadow_rays = context_.config.program != Program::segments;
+  arguments.casts_shadow_rays = context_.config.casts_shadow_rays();
   arguments.cull_shadow_rays = context_.config.cull_shadow_rays;
   arguments.scatter = to.scatter;
   arguments.shadow_ray = to.shadow_ray;
   arguments.lighting = to.lighting;
   arguments.casts = &bin.casts;
-  context_.machine.run(context_.kernels.scatter, arguments, bin.live.without(bin.shadow));
+  context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
 }
 
 void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block) {
@@ -93,8 +93,8 @@ void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block
 void IntersectionStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   const Bins::Block& bin = bin_block(block);
-  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.live.without(bin.shadow));
-  if (context_.config.program == Program::segments) return;
+  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.segments());
+  if (!context_.config.casts_shadow_rays()) return;
   save_block(step, block, context_.layout.ray_bin, from.shadow_ray, bin.casts);
   save_block(step, block, context_.layout.lighting_bin, from.lighting, bin.casts);
   save_block(step, block, context_.layout.direct_light_bin, from.direct_light, bin.shadow);

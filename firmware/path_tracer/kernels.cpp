@@ -267,23 +267,18 @@ void fold(const FoldArguments& arguments) {
   save_sum(arguments, sum);
 }
 
-template <class Arguments, void (*program)(const Arguments&)>
-constexpr cn::Kernel<Arguments> kernel(const char* name) {
-  return {name, &cn::run_strips<Arguments, program>};
-}
-
 }  // namespace
 
 const Kernels& PATH_TRACER_KERNELS() {
   static constexpr Kernels table{
-      kernel<IntersectArguments, intersect>("intersect"),
-      kernel<ScatterArguments, scatter>("scatter"),
-      kernel<IlluminateArguments, illuminate>("illuminate"),
-      kernel<AppendArguments, append>("append"),
-      kernel<ReplaceArguments, replace>("replace"),
-      kernel<FinishedPlaceArguments, finished_place>("finished_place"),
-      kernel<ListArguments, list>("list"),
-      kernel<FoldArguments, fold>("fold"),
+      cn::kernel<IntersectArguments, intersect>("intersect"),
+      cn::kernel<ScatterArguments, scatter>("scatter"),
+      cn::kernel<IlluminateArguments, illuminate>("illuminate"),
+      cn::kernel<AppendArguments, append>("append"),
+      cn::kernel<ReplaceArguments, replace>("replace"),
+      cn::kernel<FinishedPlaceArguments, finished_place>("finished_place"),
+      cn::kernel<ListArguments, list>("list"),
+      cn::kernel<FoldArguments, fold>("fold"),
   };
   return table;
 }

@@ -34,10 +34,10 @@ void PathStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
-  const LaneMask ready = bin.live.without(bin.casts);
+  const LaneMask ready = bin.ready();
   load_block(step, block, to.path, context_.layout.path_bin, ready);
   load_block(step, block, to.scatter, context_.layout.scatter_bin, ready);
-  if (context_.config.program != Program::segments)
+  if (context_.config.casts_shadow_rays())
     load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.shadow);
 }
 
@@ -56,7 +56,7 @@ void PathStage::append_vertices(std::uint64_t step, int block) {
   const Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
   const Saves to = saves(step);
-  appended_ = bin.live.without(bin.casts);
+  appended_ = bin.ready();
   ended_ = LaneMask{};
   finished_ = LaneMask{};
   AppendArguments arguments;
@@ -100,7 +100,7 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   arguments.ended = &ended_;
   arguments.finished = &finished_;
   arguments.camera = context_.machine.read_mono(context_.layout.camera);
-  if (context_.config.program != Program::segments) {
+  if (context_.config.casts_shadow_rays()) {
     arguments.light_count = context_.layout.light_count;
     arguments.light_cdf =
         context_.machine.read_mono(context_.layout.light_cdf, std::size_t(arguments.light_count));
@@ -118,7 +118,6 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   context_.machine.run(context_.kernels.replace, arguments, appended_);
   camera_rays_.issue(std::uint64_t(started));
   bin.live = replaced_.with(bin.casts);
-  bin.live_count = appended_.count() - ended_count + started + bin.casts.count();
   bin.shadow = bin.casts;
 }
 

@@ -149,7 +149,7 @@ void PathTracer::run_bin_step() {
 void PathTracer::after_path_step(const Step& step) {
   if (radiance_is_timed()) announce_results();
   last_path_step_ = step.number;
-  if (bins_.blocks[std::size_t(step.block)].live_count > 0) {
+  if (bins_.blocks[std::size_t(step.block)].live.any()) {
     live_blocks_.push_back(step.block);
     plan(ray_stage_, step.block);
   }

@@ -53,6 +53,7 @@ struct ProgramConfig {
   LightSampling light_sampling = LightSampling::area;
   std::uint64_t seed = 1;
 
+  bool casts_shadow_rays() const { return program != Program::segments; }
   bool buffers_loads() const { return buffer_loads && n > 0; }
   bool buffers_saves() const { return buffer_saves && n > 0; }
   int load_buffers() const { return buffers_loads() ? n + 1 : 1; }

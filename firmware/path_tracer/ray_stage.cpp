@@ -21,9 +21,8 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.surface_place = bin.surface_place;
   arguments.hit_something = &bin.hit_something;
   context_.machine.run(context_.kernels.intersect, arguments, bin.live);
-  const auto shadow_rays = std::uint64_t(bin.shadow.count());
-  context_.counts.segments += std::uint64_t(bin.live_count) - shadow_rays;
-  context_.counts.shadow_rays += shadow_rays;
+  context_.counts.segments += std::uint64_t(bin.segments().count());
+  context_.counts.shadow_rays += std::uint64_t(bin.shadow.count());
 }
 
 void RayStage::save(std::uint64_t step, int block) {

@@ -8,15 +8,7 @@ const Kernels& kernels_x86_64_v4();
 const Kernels& kernels_observed();
 
 const Kernels& kernels(Level level) {
-  switch (level) {
-    case Level::x86_64_v4:
-      return kernels_x86_64_v4();
-    case Level::x86_64_v3:
-      return kernels_x86_64_v3();
-    case Level::x86_64_v2:
-      break;
-  }
-  return kernels_x86_64_v2();
+  return cn::at_level(level, kernels_x86_64_v2, kernels_x86_64_v3, kernels_x86_64_v4)();
 }
 
 const Kernels& observed_kernels() {

@@ -13,12 +13,14 @@ namespace path_tracer {
 struct Bins {
   struct Block {
     LaneMask live;  ///< slots that hold a path
-    int live_count = 0;
     LaneMask hit_something;
     LaneMask shadow;  ///< slots whose ray is a shadow ray
     LaneMask casts;   ///< slots whose next ray is one
     PolyField<MonoAddress> surface_place;
     PolyField<MonoAddress> light_place;
+
+    LaneMask segments() const { return live.without(shadow); }  ///< slots whose ray is a segment
+    LaneMask ready() const { return live.without(casts); }      ///< slots whose vertex is complete
   };
   std::vector<Block> blocks;
 };

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <thread>
 
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/bench_command.hpp"
@@ -26,7 +25,7 @@ struct BenchReferenceCommand {
   RenderOptions options;
   ChipOptions chip;
   LevelOption level;
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int jobs = 1;
 
   void run();
 
@@ -90,9 +89,7 @@ void add_bench_reference_command(CLI::App& bench) {
   command.add_option("--seed", state->options.program.seed, "Seed of the random numbers")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command.add_option("--jobs", state->jobs, "Processes at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_jobs_option(command, state->jobs);
   state->chip.add_to(command, "csx600");
   state->level.add_to(command);
   command.callback([state] { state->run(); });

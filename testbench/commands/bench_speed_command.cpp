@@ -25,7 +25,6 @@ using Json = nlohmann::ordered_json;
 using path_tracer::Level;
 using path_tracer::Program;
 
-constexpr Program kPrograms[] = {Program::segments, Program::direct, Program::full};
 constexpr int kPes[] = {16, 32, 64, 96, 192, 384, 768, 1024};
 constexpr Level kLevels[] = {Level::x86_64_v2, Level::x86_64_v3, Level::x86_64_v4};
 /// Waves of a whole run fill a disk; this much of the image shows what tracing costs.
@@ -142,9 +141,8 @@ std::vector<Variant> BenchSpeedCommand::make_variants(const Scene& loaded) const
     change(variant);
     variants.push_back(std::move(variant));
   };
-  for (const Program program : kPrograms) {
+  for (const Program program : kPaperPrograms) {
     const auto set_program = [program](Variant& variant) { variant.options.program.program = program; };
-    // Styles of timing side by side: one more `add` each, with the style set in its options.
     add(program_name(program), "timed", set_program);
     add(program_name(program), "native", [&](Variant& variant) {
       set_program(variant);
@@ -186,7 +184,7 @@ const Variant& find(const std::vector<Variant>& variants, const std::string& gro
 void print_programs(const std::vector<Variant>& variants) {
   std::printf("  %-10s %12s %12s %14s %16s %14s\n", "program", "timed", "native", "timed/native",
               "simulated/host", "times silicon");
-  for (const Program program : kPrograms) {
+  for (const Program program : kPaperPrograms) {
     const Variant& timed = find(variants, program_name(program), "timed");
     const Variant& native = find(variants, program_name(program), "native");
     std::printf("  %-10s %7.2f M/s  %7.2f M/s  %13.2f  %15.1f  %13.1f\n", program_name(program),
@@ -262,9 +260,7 @@ void add_bench_speed_command(CLI::App& bench) {
   command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
-  command.add_option("--samples", state->samples, "Paths a pixel")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
+  add_samples_option(command, state->samples);
   command.add_option("--repetitions", state->repetitions, "Runs of each kind")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

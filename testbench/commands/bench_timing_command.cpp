@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
@@ -25,7 +24,7 @@ struct BenchTimingCommand {
   ChipOptions chip;
   LevelOption level;
   int samples = 4;
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int jobs = 1;
   std::string json;
 
   void run() const;
@@ -116,12 +115,8 @@ void add_bench_timing_command(CLI::App& bench) {
   command.add_option("scene", state->scene, "Scene to run, on a film of 96 x 96")->capture_default_str();
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
-  command.add_option("--samples", state->samples, "Paths a pixel")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
-  command.add_option("--jobs", state->jobs, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_samples_option(command, state->samples);
+  add_jobs_option(command, state->jobs);
   command.add_option("--json", state->json, "Also write the points to this file, without host times");
   command.callback([state] { state->run(); });
 }

@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "model/chip_presets.hpp"
 #include "testbench/atomic_file.hpp"
@@ -101,19 +100,14 @@ void add_calibrate_command(CLI::App& app) {
       "calibrate",
       "Fit the constants of preset paper to three cells of the paper's tables, predict the others");
   const auto state = std::make_shared<CalibrateCommand>();
-  state->options.at_once = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
   command.add_option("--closed-scene", state->closed_scene, "Scene of the alternative 'closed box'")
       ->capture_default_str();
   command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
-  command.add_option("--samples", state->options.samples, "Paths a pixel")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
-  command.add_option("--jobs", state->options.at_once, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_samples_option(command, state->options.samples);
+  add_jobs_option(command, state->options.at_once);
   command.add_flag("--alternatives", state->alternatives,
                    "Fit again under each alternative to what the paper leaves open");
   command.add_option("--write", state->header,

@@ -1,9 +1,11 @@
 #include "testbench/commands/command_options.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <thread>
 
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
@@ -100,6 +102,25 @@ path_tracer::Level LevelOption::level() const {
     throw InputError("--level: found " + level_ + ", this machine executes levels up to v" +
                      std::to_string(2 + static_cast<int>(widest)));
   return wanted;
+}
+
+void add_samples_option(CLI::App& command, int& samples) {
+  command.add_option("--samples", samples, "Paths a pixel")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+}
+
+void add_jobs_option(CLI::App& command, int& jobs) {
+  jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  command.add_option("--jobs", jobs, "Runs at a time, each a process")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+void add_check_hazards_flag(CLI::App& command, bool& check_hazards) {
+  command.add_flag(
+      "--check-hazards", check_hazards,
+      "Stop when the firmware uses what a transfer may still read or write (kernels at level v2)");
 }
 
 Scene load_scene_for_film(const std::string& path, const std::string& size) {

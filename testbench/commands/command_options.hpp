@@ -63,6 +63,15 @@ class LevelOption {
   std::string level_ = "auto";
 };
 
+/// --samples, at least one a pixel; the default is the value in `samples`.
+void add_samples_option(CLI::App& command, int& samples);
+
+/// --jobs: processes at a time; by default as many as there are cores.
+void add_jobs_option(CLI::App& command, int& jobs);
+
+/// --check-hazards.
+void add_check_hazards_flag(CLI::App& command, bool& check_hazards);
+
 /// Loads a scene; `size`, "480x480", takes the place of its film's unless it is empty. Throws InputError.
 Scene load_scene_for_film(const std::string& path, const std::string& size);
 

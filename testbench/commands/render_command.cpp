@@ -169,9 +169,7 @@ void add_render_command(CLI::App& app) {
   state->timing.add_to(command);
   state->level.add_to(command);
   command.add_flag("--native", state->native, "Run the firmware without SystemC: same image, no time");
-  command.add_flag(
-      "--check-hazards", state->options.check_hazards,
-      "Stop when the firmware uses what a transfer may still read or write (kernels at level v2)");
+  add_check_hazards_flag(command, state->options.check_hazards);
   command.add_option("--exr", state->exr, "Write the image as OpenEXR");
   command.add_option("--png", state->png, "Write the image as PNG");
   command.add_option("--stats,--json", state->statistics, "Write statistics as JSON");

@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
@@ -31,7 +30,7 @@ struct ReproduceCommand {
   LevelOption level;
   int samples = 4;
   bool check_hazards = false;
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int jobs = 1;
   bool image = false;
   std::string json;
 
@@ -73,24 +72,19 @@ void print_table(int table, const char* title, const std::vector<Cell>& cells) {
 }
 
 void print_summary(const std::vector<Cell>& cells) {
-  constexpr std::size_t kRowOfOneBuffer = 1;
-  const double direct = cells[3 * kRowOfOneBuffer + 1].model_seconds;
-  const double full = cells[3 * kRowOfOneBuffer + 2].model_seconds;
-  double worst = 0;
-  double sum = 0;
-  int predicted = 0;
+  std::vector<double> model;
+  std::vector<double> paper;
   for (const Cell& cell : cells) {
-    if (is_fitted(cell.of)) continue;
-    worst = std::max(worst, std::abs(cell.error_percent()));
-    sum += std::abs(cell.error_percent());
-    ++predicted;
+    model.push_back(cell.model_seconds);
+    paper.push_back(cell.of.seconds());
   }
   std::printf("Radiance at n = 1: %.2f %% of the full computation (paper: %.2f %%)\n",
-              100 * (1 - direct / full), 100 * (1 - 13.17 / 13.28));
+              100 * radiance_share(model), 100 * radiance_share(paper));
+  const PredictionError error = prediction_error(model);
   std::printf(
       "Error of the %d predicted cells: %.1f %% mean, %.1f %% worst (* preset paper was fitted to this "
       "cell)\n",
-      predicted, sum / predicted, worst);
+      error.cells, 100 * error.mean, 100 * error.worst);
 }
 
 /// Samples that give about the paper's segments; the time is scaled to exactly as many.
@@ -173,16 +167,10 @@ void add_reproduce_command(CLI::App& app) {
   state->chip.add_to(command, "paper");
   state->timing.add_to(command);
   state->level.add_to(command);
-  command.add_option("--samples", state->samples, "Paths a pixel")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
-  command.add_option("--jobs", state->jobs, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_samples_option(command, state->samples);
+  add_jobs_option(command, state->jobs);
   command.add_flag("--image", state->image, "Render the paper's image instead and compare its time");
-  command.add_flag(
-      "--check-hazards", state->check_hazards,
-      "Stop when the firmware uses what a transfer may still read or write (kernels at level v2)");
+  add_check_hazards_flag(command, state->check_hazards);
   command.add_option("--json", state->json, "Also write the cells to this file");
   command.callback([state] { state->run(); });
 }

@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
@@ -15,7 +14,7 @@ namespace {
 struct ValidateCommand {
   SetOptions settings;
   LevelOption level;
-  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int jobs = 1;
   std::string json;
   std::string csv;
 
@@ -46,9 +45,7 @@ void add_validate_command(CLI::App& app) {
   const auto state = std::make_shared<ValidateCommand>();
   state->settings.add_to(command);
   state->level.add_to(command);
-  command.add_option("--jobs", state->jobs, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_jobs_option(command, state->jobs);
   command.add_option("--json", state->json, "Also write figures, cycles and bandwidths to this file");
   command.add_option("--csv", state->csv, "Also write the figures to this file");
   command.callback([state] { state->run(); });

@@ -104,6 +104,11 @@ void ControlUnit::synchronise() {
 
 /// What the host begins next must not come after requests that were booked for later.
 void ControlUnit::settle_pio(Cycles cycle) {
+  if (host_is_transferring()) settle_pio_beside_host(cycle);
+  pio->settle(cycle);
+}
+
+void ControlUnit::settle_pio_beside_host(Cycles cycle) {
   for (auto next = pio->next_start(); host_is_transferring() && next && *next <= cycle;
        next = pio->next_start()) {
     wait_until(*next);
@@ -114,7 +119,6 @@ void ControlUnit::settle_pio(Cycles cycle) {
     wait_until(cycle);
     wait(sc_core::SC_ZERO_TIME);
   }
-  pio->settle(cycle);
 }
 
 bool ControlUnit::serve_next_request() {

@@ -122,6 +122,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   bool host_is_transferring() const { return host_traffic.size() > 0 && host_traffic->in_progress(); }
   /// Settles the PIO engine up to `cycle`; does not run ahead of the host while that uses the network.
   void settle_pio(Cycles cycle);
+  void settle_pio_beside_host(Cycles cycle);
   bool serve_next_request();
   void report_begin(CycleCause cause, int semaphore = -1);
   void synchronise();

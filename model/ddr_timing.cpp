@@ -25,12 +25,16 @@ class DdrTiming::Burst {
  public:
   Burst(DdrTiming& ddr, BusDirection direction, Cycles arrival)
       : ddr_(ddr),
+        bank_(ddr.bank_.data()),
         page_bytes_(ddr.page_bytes_),
         banks_(ddr.banks_),
         bytes_per_cycle_(ddr.bytes_per_cycle_),
+        page_hit_cycles_(ddr.page_hit_cycles_),
+        page_miss_cycles_(ddr.page_miss_cycles_),
         arrival_(arrival),
         turn_round_(ddr.turn_round(direction)),
-        bus_free_(ddr.bus_free_) {}
+        bus_free_(ddr.bus_free_),
+        next_refresh_(ddr.next_refresh_) {}
 
   /// Returns the first byte's cycle on the data bus.
   Cycles access(cn::MonoAddress address, std::uint64_t bytes) {
@@ -60,34 +64,43 @@ class DdrTiming::Burst {
   /// A piece within one page.
   Cycles access_page(std::uint64_t page, std::uint64_t bytes) {
     const Cycles now = std::max(arrival_, bus_free_);
-    if (now >= ddr_.next_refresh_) {
-      ddr_.bus_free_ = bus_free_;
-      ddr_.refresh_until(now);
-    }
-    Bank& bank = ddr_.bank_[banks_.remainder(page)];
-    const std::uint64_t row = banks_.quotient(page);
-    const bool hit = bank.open_row == row;
+    if (now >= next_refresh_) refresh(now);
+    Bank& bank = bank_[banks_.remainder(page)];
+    const bool hit = bank.open_page == page;
     const Cycles command = std::max(arrival_, bank.ready);
-    const Cycles data_ready = command + (hit ? ddr_.page_hit_cycles_ : ddr_.page_miss_cycles_);
+    const Cycles data_ready = command + (hit ? page_hit_cycles_ : page_miss_cycles_);
     const Cycles transfer_cycles = bytes_per_cycle_.quotient(bytes + bytes_per_cycle_.value() - 1);
     const Cycles start = std::max(data_ready, bus_free_ + turn_round_);
     turn_round_ = 0;
     bus_free_ = start + transfer_cycles;
-    bank.open_row = row;
-    bank.ready = bus_free_ - ddr_.page_hit_cycles_;
+    bank.open_page = page;
+    bank.ready = bus_free_ - page_hit_cycles_;
     ++pages_;
     misses_ += !hit;
     busy_cycles_ += transfer_cycles;
     return start;
   }
 
+  /// Rare, and kept out of the way of what runs for every page.
+  [[gnu::noinline, gnu::cold]] static Cycles refresh_until(DdrTiming& ddr, Cycles now, Cycles bus_free) {
+    ddr.bus_free_ = bus_free;
+    ddr.refresh_until(now);
+    return ddr.next_refresh_;
+  }
+  void refresh(Cycles now) { next_refresh_ = refresh_until(ddr_, now, bus_free_); }
+
+  // Copies of what does not change: a store to a bank could change the original, for all the compiler knows.
   DdrTiming& ddr_;
+  Bank* const bank_;
   const Divisor page_bytes_;
   const Divisor banks_;
   const Divisor bytes_per_cycle_;
+  const Cycles page_hit_cycles_;
+  const Cycles page_miss_cycles_;
   const Cycles arrival_;
   Cycles turn_round_;
   Cycles bus_free_;
+  Cycles next_refresh_;
   std::uint64_t bytes_ = 0;
   std::uint64_t pages_ = 0;
   std::uint64_t misses_ = 0;
@@ -101,11 +114,12 @@ DdrTiming::Access DdrTiming::access(cn::MonoAddress address, std::uint64_t bytes
   return burst.finish(burst.access(address, bytes));
 }
 
-DdrTiming::Access DdrTiming::access(const std::vector<MonoPieces::Run>& runs, bool write, Cycles arrival) {
+DdrTiming::Access DdrTiming::access(const MonoPieces::Runs& runs, bool write, Cycles arrival) {
   if (runs.empty()) return {arrival, arrival, true};
   Burst burst(*this, write ? BusDirection::write : BusDirection::read, arrival);
-  const Cycles start = burst.access(runs.front().address, runs.front().bytes);
-  for (std::size_t i = 1; i < runs.size(); ++i) burst.access(runs[i].address, runs[i].bytes);
+  auto run = runs.begin();
+  const Cycles start = burst.access(run->address, run->bytes);
+  for (++run; run != runs.end(); ++run) burst.access(run->address, run->bytes);
   return burst.finish(start);
 }
 
@@ -123,7 +137,7 @@ void DdrTiming::refresh_until(Cycles now) {
   const Cycles due = (now - next_refresh_) / refresh_interval_cycles_ + 1;
   const Cycles latest = next_refresh_ + (due - 1) * refresh_interval_cycles_;
   const Cycles over = std::max(latest, bus_free_) + refresh_cycles_;
-  for (Bank& bank : bank_) bank = {kNoRow, over};
+  for (Bank& bank : bank_) bank = {kNoPage, over};
   statistics_.refreshes += due;
   next_refresh_ = latest + refresh_interval_cycles_;
 }

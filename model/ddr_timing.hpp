@@ -54,14 +54,14 @@ class DdrTiming {
   Access access(cn::MonoAddress address, std::uint64_t bytes, bool write, Cycles arrival);
   /// Accesses that arrive together, one after the other; from the start of the first to the finish of the
   /// last.
-  Access access(const std::vector<MonoPieces::Run>& runs, bool write, Cycles arrival);
+  Access access(const MonoPieces::Runs& runs, bool write, Cycles arrival);
 
   const DdrStatistics& statistics() const { return statistics_; }
 
  private:
-  static constexpr std::uint64_t kNoRow = ~std::uint64_t{0};
+  static constexpr std::uint64_t kNoPage = ~std::uint64_t{0};
   struct Bank {
-    std::uint64_t open_row = kNoRow;
+    std::uint64_t open_page = kNoPage;  ///< of the memory, so it names the row
     Cycles ready = 0;  ///< when the row may change, or a refresh is over
   };
   enum class BusDirection : std::uint8_t { unused, read, write };

@@ -99,20 +99,21 @@ void DmaEngine::settle(Cycles now) {
 }
 
 void DmaEngine::start_due(Cycles now) {
+  if (queue_.waiting() == 0) return;
   for (auto next = queue_.next(); next && next->cycle <= now; next = queue_.next()) start(*next);
 }
 
 bool DmaEngine::serve_next() {
   if (at_) return wait_for_request();
-  const auto next = queue_.next();
-  if (next) start(*next);
-  return next.has_value();
+  if (queue_.waiting() == 0) return false;
+  start(*queue_.next());
+  return true;
 }
 
 std::optional<Cycles> DmaEngine::next_start() const {
   if (at_) return std::nullopt;  // it starts by itself
-  const auto next = queue_.next();
-  return next ? std::optional(next->cycle) : std::nullopt;
+  if (queue_.waiting() == 0) return std::nullopt;
+  return queue_.next()->cycle;
 }
 
 std::uint64_t DmaEngine::words_moved_before(Cycles cycle) const {

@@ -52,6 +52,7 @@ Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, uns
     unbooked_.push_back(packets);
   }
   statistics_.busy_cycles += end - start;
+  free_at_ = clock_.time_at(end);
   return free_ = end;
 }
 
@@ -63,7 +64,7 @@ bool HostLink::move(tlm::tlm_command command, cn::MonoAddress address, unsigned 
 }
 
 bool HostLink::in_progress() const {
-  return agenda_ == nullptr && clock_.time_at(free_) > sc_core::sc_time_stamp();
+  return agenda_ == nullptr && free_at_ > sc_core::sc_time_stamp();
 }
 
 void HostLink::book_until(Cycles cycle) {

@@ -66,6 +66,7 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   ClockDomain clock_;
   HostLinkTiming timing_;
   Cycles free_ = 0;
+  sc_core::sc_time free_at_;  ///< the same in time
   PayloadPool pool_;
   std::vector<HostPackets> unbooked_;  ///< transfers, in order
 

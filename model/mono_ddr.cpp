@@ -84,8 +84,7 @@ tlm::tlm_response_status MonoDdr::serve(PeAddresses& addresses, sc_core::sc_time
   const MonoPieces& pieces = addresses.pieces;
   addresses.served = true;
   addresses.first_data = delay;
-  for (const MonoPieces::Run& run : pieces.runs())
-    if (!contains(run.address, run.bytes)) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  if (!pieces.within(memory_.size_bytes())) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
   if (pieces.runs().empty()) return tlm::TLM_OK_RESPONSE;
   const Cycles arrival = cycle_of_delay(clock_, delay);
   const DdrTiming::Access access = timing_.access(pieces.runs(), pieces.write(), arrival);

@@ -36,28 +36,6 @@ std::uint64_t enabled_word(const cn::LaneMask& enabled, int first_pe, int num_pe
   return word;
 }
 
-/// One bit a piece of a packed array: whether it is misaligned. Offsets within packets and words repeat after
-/// `period` pieces, so for a period that divides 64 the same word holds for every 64 pieces.
-class MisalignedPattern {
- public:
-  MisalignedPattern(cn::MonoAddress first, std::uint64_t bytes, const Divisor& packet) {
-    const std::uint64_t whole = std::lcm(packet.value(), std::uint64_t{8});
-    const std::uint64_t period = whole / std::gcd(whole, bytes);
-    repeats_ = kWordLanes % period == 0;
-    const std::uint64_t packets_bytes = whole_packets(bytes, packet);
-    for (std::uint64_t piece = 0; repeats_ && piece < period; ++piece)
-      if (is_misaligned(first + piece * bytes, bytes, packets_bytes, packet))
-        for (std::uint64_t place = piece; place < kWordLanes; place += period)
-          word_ |= std::uint64_t{1} << place;
-  }
-  bool repeats() const { return repeats_; }
-  std::uint64_t word() const { return word_; }
-
- private:
-  bool repeats_;
-  std::uint64_t word_ = 0;
-};
-
 }  // namespace
 
 void MonoPieces::SeenAddresses::clear() {
@@ -86,90 +64,110 @@ void MonoPieces::describe(const cn::Transfer& transfer, int num_pes, const Rules
   enabled_ = transfer.enabled;
   bytes_per_pe_ = transfer.poly.size_bytes;
   pes_ = pieces_ = misaligned_ = 0;
-  runs_.clear();
+  packets_ = end_ = 0;
+  runs_.count_ = 0;
+  if (runs_.storage_.size() < std::size_t(num_pes)) runs_.storage_.resize(std::size_t(num_pes));
   if (!describe_packed_array(num_pes, rules)) describe_each(num_pes, rules);
-  packets_ = 0;
-  for (const Run& run : runs_)
-    packets_ += rules.packet_bytes.quotient(run.bytes + rules.packet_bytes.value() - 1);
+}
+
+void MonoPieces::append_run(cn::MonoAddress address, std::uint64_t bytes, const Divisor& packet_bytes) {
+  runs_.storage_[runs_.count_++] = {address, bytes};
+  packets_ += packet_bytes.quotient(bytes + packet_bytes.value() - 1);
+  end_ = std::max(end_, address + bytes < address ? ~cn::MonoAddress{0} : address + bytes);
+}
+
+const MonoPieces::MisalignedPattern& MonoPieces::pattern(const Rules& rules) {
+  const Divisor& packet = rules.packet_bytes;
+  const bool packets_are_words = packet.value() % 8 == 0;
+  const std::uint64_t whole = packets_are_words ? packet.value() : std::lcm(packet.value(), std::uint64_t{8});
+  const std::uint64_t offset = packets_are_words ? packet.remainder(first_) : first_ % whole;
+  patterns_.resize(kKnownPatterns);
+  MisalignedPattern& pattern = patterns_[(offset / 8 + stride_bytes_ / 8 * 5) % kKnownPatterns];
+  if (pattern.offset == offset && pattern.bytes == stride_bytes_) return pattern;
+
+  pattern = {offset, stride_bytes_, false, 0};
+  const std::uint64_t period = whole / std::gcd(whole, stride_bytes_);
+  pattern.repeats = kWordLanes % period == 0;
+  const std::uint64_t packets_bytes = whole_packets(stride_bytes_, packet);
+  for (std::uint64_t piece = 0; pattern.repeats && piece < kWordLanes; ++piece)
+    if (is_misaligned(offset + piece * stride_bytes_, stride_bytes_, packets_bytes, packet))
+      pattern.word |= std::uint64_t{1} << piece;
+  return pattern;
 }
 
 /// An array without gaps between its pieces, whichever PEs take part: runs are runs of enable bits.
 bool MonoPieces::describe_packed_array(int num_pes, const Rules& rules) {
   if (!by_pe_.empty() || bytes_per_pe_ == 0 || stride_bytes_ != std::uint64_t(bytes_per_pe_)) return false;
-  const MisalignedPattern pattern(first_, stride_bytes_, rules.packet_bytes);
-  if (!pattern.repeats()) return false;
-  int run_end = -1;
+  const MisalignedPattern& misaligned = pattern(rules);
+  if (!misaligned.repeats) return false;
+  int run_start = 0;
+  int run_end = 0;
+  const auto end_run = [&] {
+    if (run_end > run_start)
+      append_run(first_ + std::uint64_t(run_start) * stride_bytes_,
+                 std::uint64_t(run_end - run_start) * stride_bytes_, rules.packet_bytes);
+  };
   for (int first_pe = 0; first_pe < num_pes; first_pe += kWordLanes) {
     std::uint64_t bits = enabled_word(enabled_, first_pe, num_pes);
     pes_ += __builtin_popcountll(bits);
-    misaligned_ += __builtin_popcountll(bits & pattern.word());
+    misaligned_ += __builtin_popcountll(bits & misaligned.word);
     while (bits != 0) {
       const int start = __builtin_ctzll(bits);
       const std::uint64_t above = bits + (std::uint64_t{1} << start);  // 0 when the run reaches bit 63
       const int end = above == 0 ? kWordLanes : __builtin_ctzll(above);
-      const std::uint64_t run_bytes = std::uint64_t(end - start) * stride_bytes_;
-      if (first_pe + start == run_end) {
-        runs_.back().bytes += run_bytes;
-      } else {
-        runs_.emplace_back(first_ + std::uint64_t(first_pe + start) * stride_bytes_, run_bytes);
+      if (first_pe + start != run_end) {
+        end_run();
+        run_start = first_pe + start;
       }
       run_end = first_pe + end;
       bits &= above == 0 ? 0 : ~std::uint64_t{0} << end;
     }
   }
+  end_run();
   pieces_ = pes_;
   return true;
 }
 
+/// Step by step over all pieces: a short loop for each question is several times faster than one that asks
+/// them all.
 void MonoPieces::describe_each(int num_pes, const Rules& rules) {
-  const bool consolidate = rules.consolidate_equal_addresses && !write();
-  if (consolidate) seen_.clear();
-  // Decided here instead of for each piece: where addresses come from, and whether some may be equal.
-  const auto describe_with = [&](const auto& address_of) {
-    if (consolidate) {
-      describe_pieces(num_pes, rules, address_of,
-                      [this](cn::MonoAddress address) { return seen_.insert(address); });
-    } else {
-      describe_pieces(num_pes, rules, address_of, [](cn::MonoAddress) { return true; });
-    }
-  };
   if (by_pe_.empty()) {
-    describe_with(
-        [first = first_, stride = stride_bytes_](int pe) { return first + std::uint64_t(pe) * stride; });
+    collect(num_pes,
+            [first = first_, stride = stride_bytes_](int pe) { return first + std::uint64_t(pe) * stride; });
   } else {
-    describe_with([first = first_, by_pe = by_pe_.data()](int pe) { return first + by_pe[pe]; });
+    collect(num_pes, [first = first_, by_pe = by_pe_.data()](int pe) { return first + by_pe[pe]; });
+  }
+  if (rules.consolidate_equal_addresses && !write()) consolidate();
+  const auto bytes = std::uint64_t(bytes_per_pe_);
+  const std::uint64_t packets_bytes = whole_packets(bytes, rules.packet_bytes);
+  const cn::MonoAddress* const address = addresses_.data();
+  for (int i = 0; i < pieces_; ++i)
+    misaligned_ += is_misaligned(address[i], bytes, packets_bytes, rules.packet_bytes);
+  for (int i = 0; i < pieces_;) {
+    const int first = i;
+    while (++i < pieces_ && address[i] == address[i - 1] + bytes) {
+    }
+    append_run(address[first], std::uint64_t(i - first) * bytes, rules.packet_bytes);
   }
 }
 
-template <class AddressOf, class IsNew>
-void MonoPieces::describe_pieces(int num_pes, const Rules& rules, const AddressOf& address_of,
-                                 const IsNew& is_new) {
-  const auto bytes = std::uint64_t(bytes_per_pe_);
-  const Divisor packet = rules.packet_bytes;
-  const std::uint64_t packets_bytes = whole_packets(bytes, packet);
+/// The addresses of all PEs that take part, in their order.
+template <class AddressOf>
+void MonoPieces::collect(int num_pes, const AddressOf& address_of) {
+  addresses_.resize(std::size_t(num_pes));
+  cn::MonoAddress* const addresses = addresses_.data();
   int pes = 0;
-  int pieces = 0;
-  int misaligned = 0;
-  cn::MonoAddress run_address = 0;
-  std::uint64_t run_bytes = 0;
-  for_each_enabled(enabled_, num_pes, [&](int pe) {
-    ++pes;
-    const cn::MonoAddress address = address_of(pe);
-    if (!is_new(address)) return;
-    ++pieces;
-    misaligned += is_misaligned(address, bytes, packets_bytes, packet);
-    if (run_bytes != 0 && run_address + run_bytes == address) {
-      run_bytes += bytes;
-      return;
-    }
-    if (run_bytes != 0) runs_.emplace_back(run_address, run_bytes);
-    run_address = address;
-    run_bytes = bytes;
-  });
-  if (run_bytes != 0) runs_.emplace_back(run_address, run_bytes);
-  pes_ = pes;
-  pieces_ = pieces;
-  misaligned_ = misaligned;
+  for_each_enabled(enabled_, num_pes, [&](int pe) { addresses[pes++] = address_of(pe); });
+  pes_ = pieces_ = pes;
+}
+
+/// Keeps the first of equal addresses.
+void MonoPieces::consolidate() {
+  seen_.clear();
+  int kept = 0;
+  for (int i = 0; i < pieces_; ++i)
+    if (seen_.insert(addresses_[std::size_t(i)])) addresses_[std::size_t(kept++)] = addresses_[std::size_t(i)];
+  pieces_ = kept;
 }
 
 }  // namespace model

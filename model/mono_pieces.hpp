@@ -15,9 +15,24 @@ namespace model {
 class MonoPieces {
  public:
   struct Run {
-    Run(cn::MonoAddress run_address, std::uint64_t run_bytes) : address(run_address), bytes(run_bytes) {}
     cn::MonoAddress address;
     std::uint64_t bytes;
+  };
+  /// In the order of their PEs. Room for the most there can be is made once, since a request has up to one
+  /// run a PE and a test for room at each costs more than the run.
+  class Runs {
+   public:
+    std::size_t size() const { return count_; }
+    bool empty() const { return count_ == 0; }
+    const Run& operator[](std::size_t index) const { return storage_[index]; }
+    const Run& front() const { return storage_.front(); }
+    const Run* begin() const { return storage_.data(); }
+    const Run* end() const { return storage_.data() + count_; }
+
+   private:
+    friend class MonoPieces;
+    std::vector<Run> storage_;
+    std::size_t count_ = 0;
   };
   struct Rules {
     Divisor packet_bytes;
@@ -48,7 +63,9 @@ class MonoPieces {
   std::uint64_t poly_bytes() const { return std::uint64_t(pes_) * std::uint64_t(bytes_per_pe_); }
   std::uint64_t mono_bytes() const { return std::uint64_t(pieces_) * std::uint64_t(bytes_per_pe_); }
   std::uint64_t packets() const { return packets_; }  ///< each run is cut into packets from its start
-  const std::vector<Run>& runs() const { return runs_; }
+  const Runs& runs() const { return runs_; }
+  /// Whether no piece reaches beyond `size_bytes`.
+  bool within(std::uint64_t size_bytes) const { return end_ <= size_bytes; }
 
  private:
   class SeenAddresses {
@@ -67,10 +84,24 @@ class MonoPieces {
     std::uint64_t generation_ = 0;
   };
 
+  /// One bit a piece of a packed array: whether it is misaligned. Offsets within packets and words repeat
+  /// after a period, so for one that divides 64 the same word holds for every 64 pieces.
+  struct MisalignedPattern {
+    std::uint64_t offset = ~std::uint64_t{0};  ///< of the array's first byte in its packet
+    std::uint64_t bytes = 0;                   ///< a piece
+    bool repeats = false;
+    std::uint64_t word = 0;
+  };
+  /// A firmware has a few arrays, over and over.
+  static constexpr std::size_t kKnownPatterns = 64;
+
   bool describe_packed_array(int num_pes, const Rules& rules);
+  const MisalignedPattern& pattern(const Rules& rules);
   void describe_each(int num_pes, const Rules& rules);
-  template <class AddressOf, class IsNew>
-  void describe_pieces(int num_pes, const Rules& rules, const AddressOf& address_of, const IsNew& is_new);
+  template <class AddressOf>
+  void collect(int num_pes, const AddressOf& address_of);
+  void consolidate();
+  void append_run(cn::MonoAddress address, std::uint64_t bytes, const Divisor& packet_bytes);
 
   cn::Direction direction_ = cn::Direction::mono_to_poly;
   cn::MonoAddress first_ = 0;
@@ -82,7 +113,10 @@ class MonoPieces {
   int pieces_ = 0;
   int misaligned_ = 0;
   std::uint64_t packets_ = 0;
-  std::vector<Run> runs_;
+  cn::MonoAddress end_ = 0;
+  Runs runs_;
+  std::vector<MisalignedPattern> patterns_;
+  std::vector<cn::MonoAddress> addresses_;  ///< of pieces, while they are described
   SeenAddresses seen_;
 };
 

@@ -13,10 +13,6 @@ bool PioQueue::full(cn::Direction direction) const {
   return engine_[std::size_t(engine_of(direction))].queue.size() >= depth_;
 }
 
-int PioQueue::waiting() const {
-  return static_cast<int>(engine_[0].queue.size() + engine_[1].queue.size());
-}
-
 void PioQueue::push(const Entry& entry) {
   engine_[std::size_t(engine_of(entry.direction))].queue.push_back(entry);
 }

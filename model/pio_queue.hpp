@@ -39,7 +39,9 @@ class PioQueue {
   PioQueue(PioArbitration arbitration, int depth);
 
   bool full(cn::Direction direction) const;
-  int waiting() const;
+  int waiting() const {
+    return static_cast<int>(engine_[0].queue.size() + engine_[1].queue.size());
+  }
   /// The queue of that direction must not be full.
   void push(const Entry& entry);
   /// The next to start if nothing else arrives before.

@@ -16,17 +16,13 @@ int ThreadScheduler::start(int priority, const std::string& name) {
     throw cn::MachineFault("no hardware thread left for '" + name + "': control.threads is " +
                            std::to_string(threads_.size()) + ", the firmware's first thread included");
   *slot = {name, priority, started_++, false, std::nullopt};
+  ++alive_;
   return static_cast<int>(slot - threads_.begin());
 }
 
 void ThreadScheduler::run(int thread) {
   threads_[std::size_t(thread)].waits_for.reset();
   running_ = thread;
-}
-
-int ThreadScheduler::alive() const {
-  return static_cast<int>(
-      std::count_if(threads_.begin(), threads_.end(), [](const Thread& t) { return !t.over; }));
 }
 
 bool ThreadScheduler::any_waits_for(const std::function<bool(int semaphore)>& is_meant) const {

@@ -34,13 +34,16 @@ class ThreadScheduler {
   /// The running thread waits for `semaphore` from now on.
   void wait(int semaphore) { threads_[std::size_t(running_)].waits_for = semaphore; }
   /// The running thread is over.
-  void end() { threads_[std::size_t(running_)].over = true; }
+  void end() {
+    threads_[std::size_t(running_)].over = true;
+    --alive_;
+  }
   void run(int thread);
 
   /// The latest thread that was run, over or not.
   int running() const { return running_; }
   /// Threads that are not over.
-  int alive() const;
+  int alive() const { return alive_; }
   /// What `thread` waits for; nothing when it is ready.
   std::optional<int> waits_for(int thread) const { return threads_[std::size_t(thread)].waits_for; }
   bool any_waits_for(const std::function<bool(int semaphore)>& is_meant) const;
@@ -68,6 +71,7 @@ class ThreadScheduler {
 
   std::vector<Thread> threads_;
   int running_ = 0;
+  int alive_ = 0;
   std::uint64_t started_ = 0;
 };
 

@@ -223,8 +223,18 @@ inline poly<To> convert(const poly<From>& from) {
     using Through =
         std::conditional_t<std::is_floating_point_v<From> && std::is_integral_v<To> && sizeof(To) < 8,
                            std::int64_t, ToLane>;
-    return poly<To>(wrap_lanes<To>(each_lane<ToLane>(
-        [&](int i) { return static_cast<ToLane>(static_cast<Through>(from.lanes()[i])); })));
+    using FromLane = typename poly<From>::Lane;
+    constexpr bool is_one_instruction =
+        (std::is_same_v<FromLane, std::int64_t> && std::is_same_v<ToLane, double>) ||
+        (std::is_same_v<FromLane, double> && std::is_same_v<ToLane, std::int64_t>);
+    if constexpr (is_one_instruction) {
+      return poly<To>(wrap_lanes<To>(each_chunk<ToLane>([&](int i) {
+        return __builtin_convertvector(from.lanes().chunk[i], typename Lanes<ToLane>::Chunk);
+      })));
+    } else {
+      return poly<To>(wrap_lanes<To>(each_lane<ToLane>(
+          [&](int i) { return static_cast<ToLane>(static_cast<Through>(from.lanes()[i])); })));
+    }
   }
 }
 

@@ -45,16 +45,9 @@ struct PolyField {
       const auto old_words = load_lanes<std::uint64_t>(row);
       const std::uint64_t kept = ~(std::uint64_t{0xffffffffu} << shift());
       const int bits = shift();
-      const Lanes<std::uint64_t> placed = each_lane<std::uint64_t>([&](int i) {
-        std::uint32_t word;
-        if constexpr (std::is_same_v<T, float>) {
-          const float lane = value.lanes()[i];
-          std::memcpy(&word, &lane, sizeof(word));
-        } else {
-          word = static_cast<std::uint32_t>(value.lanes()[i]);
-        }
-        return (old_words[i] & kept) | (std::uint64_t{word} << bits);
-      });
+      const Lanes<std::uint64_t> new_words = words_of(value);
+      const auto placed = each_chunk<std::uint64_t>(
+          [&](int i) { return (old_words.chunk[i] & kept) | (new_words.chunk[i] << bits); });
       store_lanes(row, select_lanes(strip.enabled, placed, old_words));
     }
   }
@@ -63,6 +56,21 @@ struct PolyField {
   using Lane = typename poly<T>::Lane;
   static constexpr int kBytes = static_cast<int>(sizeof(T));
   static constexpr std::uint64_t kWords = (sizeof(T) + 3) / 4;
+
+  /// A narrow variable's bits, zero above.
+  static Lanes<std::uint64_t> words_of(const poly<T>& value) {
+    if constexpr (std::is_same_v<T, float>) {
+      return each_lane<std::uint64_t>([&](int i) {
+        const float lane = value.lanes()[i];
+        std::uint32_t word;
+        std::memcpy(&word, &lane, sizeof(word));
+        return std::uint64_t{word};
+      });
+    } else {
+      const auto lanes = bit_cast_lanes<std::uint64_t>(value.lanes());
+      return each_chunk<std::uint64_t>([&](int i) { return lanes.chunk[i] & 0xffffffffu; });
+    }
+  }
 
   int shift() const { return static_cast<int>(8 * (unsigned(offset_bytes) % 8)); }
   std::uint64_t* address() const {

@@ -63,21 +63,29 @@ class DdrTiming::Burst {
  private:
   /// A piece within one page.
   Cycles access_page(std::uint64_t page, std::uint64_t bytes) {
+    const Cycles transfer_cycles = bytes_per_cycle_.quotient(bytes + bytes_per_cycle_.value() - 1);
+    busy_cycles_ += transfer_cycles;
+    ++pages_;
+    if (page == page_ && bus_free_ < next_refresh_) {
+      // Its row is open and its command went out while the access before was on the bus.
+      const Cycles start = bus_free_;
+      bus_free_ += transfer_cycles;
+      bank_[banks_.remainder(page)].ready = bus_free_ - page_hit_cycles_;
+      return start;
+    }
+    page_ = page;
     const Cycles now = std::max(arrival_, bus_free_);
     if (now >= next_refresh_) refresh(now);
     Bank& bank = bank_[banks_.remainder(page)];
     const bool hit = bank.open_page == page;
     const Cycles command = std::max(arrival_, bank.ready);
     const Cycles data_ready = command + (hit ? page_hit_cycles_ : page_miss_cycles_);
-    const Cycles transfer_cycles = bytes_per_cycle_.quotient(bytes + bytes_per_cycle_.value() - 1);
     const Cycles start = std::max(data_ready, bus_free_ + turn_round_);
     turn_round_ = 0;
     bus_free_ = start + transfer_cycles;
     bank.open_page = page;
     bank.ready = bus_free_ - page_hit_cycles_;
-    ++pages_;
     misses_ += !hit;
-    busy_cycles_ += transfer_cycles;
     return start;
   }
 
@@ -101,6 +109,7 @@ class DdrTiming::Burst {
   Cycles turn_round_;
   Cycles bus_free_;
   Cycles next_refresh_;
+  std::uint64_t page_ = kNoPage;  ///< that the access before was in
   std::uint64_t bytes_ = 0;
   std::uint64_t pages_ = 0;
   std::uint64_t misses_ = 0;

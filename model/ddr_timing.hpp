@@ -62,7 +62,7 @@ class DdrTiming {
   static constexpr std::uint64_t kNoPage = ~std::uint64_t{0};
   struct Bank {
     std::uint64_t open_page = kNoPage;  ///< of the memory, so it names the row
-    Cycles ready = 0;  ///< when the row may change, or a refresh is over
+    Cycles ready = 0;                   ///< when the row may change, or a refresh is over
   };
   enum class BusDirection : std::uint8_t { unused, read, write };
 

@@ -6,14 +6,6 @@
 namespace model {
 namespace {
 
-/// Calls `visit` with each enabled PE below `num_pes` in ascending order.
-template <class Visitor>
-void for_each_enabled(const cn::LaneMask& enabled, int num_pes, Visitor&& visit) {
-  for (int first_pe = 0; first_pe < num_pes; first_pe += cn::kStripLanes)
-    for (unsigned bits = enabled.strip_bits(first_pe / cn::kStripLanes); bits != 0; bits &= bits - 1)
-      visit(first_pe + __builtin_ctz(bits));
-}
-
 /// The bytes of as many packets as a piece needs wherever it lies.
 std::uint64_t whole_packets(std::uint64_t bytes, const Divisor& packet) {
   return packet.quotient(bytes + packet.value() - 1) * packet.value();
@@ -21,7 +13,7 @@ std::uint64_t whole_packets(std::uint64_t bytes, const Divisor& packet) {
 
 bool is_misaligned(cn::MonoAddress address, std::uint64_t bytes, std::uint64_t packets_bytes,
                    const Divisor& packet) {
-  return address % 8 != 0 || packet.remainder(address) + bytes > packets_bytes;
+  return (address % 8 != 0) | (packet.remainder(address) + bytes > packets_bytes);
 }
 
 constexpr int kWordLanes = 64;
@@ -141,8 +133,10 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   const auto bytes = std::uint64_t(bytes_per_pe_);
   const std::uint64_t packets_bytes = whole_packets(bytes, rules.packet_bytes);
   const cn::MonoAddress* const address = addresses_.data();
+  int misaligned = 0;
   for (int i = 0; i < pieces_; ++i)
-    misaligned_ += is_misaligned(address[i], bytes, packets_bytes, rules.packet_bytes);
+    misaligned += is_misaligned(address[i], bytes, packets_bytes, rules.packet_bytes);
+  misaligned_ = misaligned;
   for (int i = 0; i < pieces_;) {
     const int first = i;
     while (++i < pieces_ && address[i] == address[i - 1] + bytes) {
@@ -151,14 +145,21 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   }
 }
 
-/// The addresses of all PEs that take part, in their order.
+/// The addresses of all PEs that take part, in their order. Without a branch on who does: nobody could
+/// predict it.
 template <class AddressOf>
 void MonoPieces::collect(int num_pes, const AddressOf& address_of) {
-  addresses_.resize(std::size_t(num_pes));
+  addresses_.resize(std::size_t(num_pes) + 1);  // what comes behind the last is written, too
   cn::MonoAddress* const addresses = addresses_.data();
-  int pes = 0;
-  for_each_enabled(enabled_, num_pes, [&](int pe) { addresses[pes++] = address_of(pe); });
-  pes_ = pieces_ = pes;
+  std::size_t pes = 0;
+  for (int first_pe = 0; first_pe < num_pes; first_pe += cn::kStripLanes) {
+    const unsigned bits = enabled_.strip_bits(first_pe / cn::kStripLanes);
+    for (int lane = 0; lane < cn::kStripLanes; ++lane) {
+      addresses[pes] = address_of(first_pe + lane);
+      pes += (bits >> lane) & 1u;
+    }
+  }
+  pes_ = pieces_ = static_cast<int>(pes);
 }
 
 /// Keeps the first of equal addresses.
@@ -166,7 +167,8 @@ void MonoPieces::consolidate() {
   seen_.clear();
   int kept = 0;
   for (int i = 0; i < pieces_; ++i)
-    if (seen_.insert(addresses_[std::size_t(i)])) addresses_[std::size_t(kept++)] = addresses_[std::size_t(i)];
+    if (seen_.insert(addresses_[std::size_t(i)]))
+      addresses_[std::size_t(kept++)] = addresses_[std::size_t(i)];
   pieces_ = kept;
 }
 

@@ -37,12 +37,9 @@ CameraRecord camera_record(const Camera& camera, const FilmSize& film) {
 }
 
 TriangleRecord triangle_record(const Triangle& triangle, std::int32_t face) {
-  TriangleRecord record;
-  record.vertex = to_record(triangle.vertex[0]);
-  record.edge1 = to_record(triangle.vertex[1] - triangle.vertex[0]);
-  record.edge2 = to_record(triangle.vertex[2] - triangle.vertex[0]);
-  record.face = face;
-  return record;
+  return path_tracer::triangle_record(to_record(triangle.vertex[0]),
+                                      to_record(triangle.vertex[1] - triangle.vertex[0]),
+                                      to_record(triangle.vertex[2] - triangle.vertex[0]), face);
 }
 
 SurfaceRecord surface_record(const Triangle& triangle, const Material& material, std::int32_t face) {

@@ -78,6 +78,25 @@ void Machine::observe_poly(Access access, PolySpan bytes, const LaneMask& enable
     access_observer()->touches_poly(access, bytes, first_pe, enabled.strip_bits(first_pe / kStripLanes));
 }
 
+/// Returns how many there are. Without a branch on who is chosen: nobody could predict it.
+int Machine::write_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
+  std::uint64_t* const row = poly_memory_.row(number.offset_bytes / 8 * 8);
+  const int shift = number.offset_bytes % 8 * 8;
+  const std::uint64_t place = std::uint64_t{0xffffffffu} << shift;
+  std::uint64_t next = 0;
+  for (int first_pe = 0; first_pe < num_pes(); first_pe += kStripLanes) {
+    const unsigned bits = chosen.strip_bits(first_pe / kStripLanes);
+    for (int lane = 0; lane < kStripLanes; ++lane) {
+      const std::uint64_t is_chosen = (bits >> lane) & 1u;
+      std::uint64_t& word = row[first_pe + lane];
+      const std::uint64_t replaced = place & -is_chosen;
+      word = (word & ~replaced) | ((next << shift) & replaced);
+      next += is_chosen;
+    }
+  }
+  return static_cast<int>(next);
+}
+
 int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
   // A running count by doubling distance: in round r each PE adds the count of the PE 2^r to its left, which
   // takes 2^r steps along the path. The result is known without walking it; tests compare with the walk.
@@ -99,13 +118,7 @@ int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> nu
     observe_poly(Access::write, {number.offset_bytes, sizeof(std::int32_t)}, chosen);
     access_observer()->kernel_ends();
   }
-  std::uint64_t* const row = poly_memory_.row(number.offset_bytes / 8 * 8);
-  int next = 0;
-  for (int pe = 0; pe < num_pes(); ++pe) {
-    if (!chosen[pe]) continue;
-    const std::int32_t value = next++;
-    std::memcpy(reinterpret_cast<char*>(&row[pe]) + number.offset_bytes % 8, &value, sizeof(value));
-  }
+  const int next = write_ascending(chosen, number);
   retire("number_ascending", issued_);
   return next;
 }

@@ -134,6 +134,7 @@ class Machine {
   }
   void observe_poly(Access access, PolySpan bytes, const LaneMask& enabled);
   void begin_transfer(const Transfer& transfer);
+  int write_ascending(const LaneMask& chosen, PolyField<std::int32_t> number);
   void observe_swazzle(const char* name, PolyField<std::uint64_t> value, int from_neighbour);
   void swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour);
 

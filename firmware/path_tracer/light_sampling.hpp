@@ -40,11 +40,11 @@ inline poly<double> sample_linear(const poly<double>& u, const poly<double>& at_
   return cn::min(u * (at_0 + at_1) / (at_0 + root), poly<double>(1.0));
 }
 
-/// A point of the unit square and its density.
+/// A point of the unit square.
 struct SquareSample {
   poly<double> u;
   poly<double> v;
-  poly<double> pdf;
+  poly<double> inverse_pdf;
 };
 
 /// Warps uniform numbers to the density (Hart, Pharr, Mueller, Lopes, McGuire, Shirley, "Practical Product
@@ -56,13 +56,17 @@ inline SquareSample sample_bilinear(const Bilinear& f, const poly<double>& u, co
   const poly<double> at_u0 = lerp(f.at_00, f.at_01, y);
   const poly<double> at_u1 = lerp(f.at_10, f.at_11, y);
   const poly<double> x = sample_linear(u, at_u0, at_u1);
-  return {x, y, lerp(at_u0, at_u1, x) * 4.0 / (at_v0 + at_v1)};
+  return {x, y, (at_v0 + at_v1) * 0.25 / lerp(at_u0, at_u1, x)};
 }
 
 /// A cosine as a corner value: positive, so that no direction above the horizon has density 0.
+inline constexpr double kLeastCornerCosine = 0.01;
 inline poly<double> corner_value(const poly<double>& cosine) {
-  constexpr double kLeast = 0.01;
-  return cn::max(cosine, poly<double>(kLeast));
+  return cn::max(cosine, poly<double>(kLeastCornerCosine));
+}
+/// The same for a cosine that is height / distance, times the distance.
+inline poly<double> corner_height(const poly<double>& height, const poly<double>& distance) {
+  return cn::max(height, distance * kLeastCornerCosine);
 }
 
 /// The point that to_light reaches, uniform in area; both cosines are scaled by the distance.
@@ -92,17 +96,22 @@ inline poly<double> at_least_tiny(const poly<double>& value) {
   return cn::max(value, poly<double>(1e-30));
 }
 
+/// What a difference of squares keeps at least of their sum, for the same reason and at any scale.
+inline constexpr double kLeastShare = 1e-30;
+inline constexpr double kNotZero = 1e-280;
+
 /// A direction in the solid angle that a light takes.
 struct SolidAngleSample {
   Direction3 to_light;
   poly<double> solid_angle;
-  poly<double> pdf;  ///< over the unit square that is mapped onto the solid angle
+  poly<double> inverse_pdf;  ///< over the unit square that is mapped onto the solid angle
 };
 
 inline LightSample weigh_by_solid_angle(const SolidAngleSample& sample, const Direction3& normal,
                                         const poly<double>& area) {
-  const poly<double> cosine = dot(sample.to_light, normal) / cn::sqrt(dot(sample.to_light, sample.to_light));
-  return {sample.to_light, cosine * sample.solid_angle / (sample.pdf * area)};
+  const poly<double> distance = cn::sqrt(dot(sample.to_light, sample.to_light));
+  return {sample.to_light,
+          dot(sample.to_light, normal) * sample.solid_angle * sample.inverse_pdf / (distance * area)};
 }
 
 /// A rectangle from a point in front of it. In coordinates along its edges its corners are (x0|x1, y0|y1,
@@ -112,7 +121,8 @@ inline LightSample weigh_by_solid_angle(const SolidAngleSample& sample, const Di
 /// and products of such numbers add angles. So one arctangent does for four arccosines, whose arguments
 /// rounding could not be trusted to keep within [-1, 1].
 struct RectangleView {
-  poly<double> length1, length2;
+  poly<double> inverse_length1, inverse_length2;
+  poly<double> area;
   poly<double> x0, x1, y0, y1, z;
   poly<double> r00, r10, r01, r11;
   poly<double> left_real, left_imaginary;  ///< angle of the arc between the corners at x0, in (-pi, pi)
@@ -121,12 +131,16 @@ struct RectangleView {
 
 inline RectangleView view_rectangle(const LightSurface& light, const Direction3& to_vertex) {
   RectangleView view;
-  view.length1.become(cn::sqrt(dot(light.edge1, light.edge1)));
-  view.length2.become(cn::sqrt(dot(light.edge2, light.edge2)));
-  view.x0.become(dot(to_vertex, light.edge1) / view.length1);
-  view.y0.become(dot(to_vertex, light.edge2) / view.length2);
-  view.x1.become(view.x0 + view.length1);
-  view.y1.become(view.y0 + view.length2);
+  const poly<double> length1 = cn::sqrt(dot(light.edge1, light.edge1));
+  const poly<double> length2 = cn::sqrt(dot(light.edge2, light.edge2));
+  view.area.become(length1 * length2);
+  const poly<double> inverse_area = 1.0 / view.area;
+  view.inverse_length1.become(length2 * inverse_area);
+  view.inverse_length2.become(length1 * inverse_area);
+  view.x0.become(dot(to_vertex, light.edge1) * view.inverse_length1);
+  view.y0.become(dot(to_vertex, light.edge2) * view.inverse_length2);
+  view.x1.become(view.x0 + length1);
+  view.y1.become(view.y0 + length2);
   view.z.become(-dot(to_vertex, light.normal));
   const poly<double> zz = view.z * view.z;
   const poly<double> x0_squared = view.x0 * view.x0;
@@ -148,29 +162,32 @@ inline RectangleView view_rectangle(const LightSurface& light, const Direction3&
   return view;
 }
 
-/// The x that has the share u of the solid angle to its left.
+/// The x that has the share u of the solid angle to its left. Urena's quotients, all over the same
+/// denominators and so without them.
 inline poly<double> rectangle_column(const RectangleView& view, const poly<double>& u) {
   const poly<double> zz = view.z * view.z;
-  const poly<double> y0z = cn::sqrt(view.y0 * view.y0 + zz);
-  const poly<double> y1z = cn::sqrt(view.y1 * view.y1 + zz);
-  const poly<double> left_size = (view.x0 * view.x0 + zz) * y0z * y1z;
+  const poly<double> y0z_squared = view.y0 * view.y0 + zz;
   const cn::SineCosine part = cn::sincos(u * view.solid_angle);
-  const poly<double> cosine = (view.left_real * part.cosine - view.left_imaginary * part.sine) / left_size;
-  const poly<double> sine = (view.left_imaginary * part.cosine + view.left_real * part.sine) / left_size;
-  const poly<double> c0 = view.y0 / y0z;
-  const poly<double> lean = view.y1 / y1z - c0 * cosine;
-  const poly<double> size_squared = lean * lean + (c0 * c0 - 1.0) * (sine * sine);
-  const poly<double> x = cn::flip_sign(view.z * sine, lean) / cn::sqrt(at_least_tiny(size_squared));
+  const poly<double> real = view.left_real * part.cosine - view.left_imaginary * part.sine;
+  const poly<double> imaginary = view.left_imaginary * part.cosine + view.left_real * part.sine;
+  const poly<double> lean = view.y1 * (view.x0 * view.x0 + zz) * y0z_squared - view.y0 * real;
+  const poly<double> across = view.z * imaginary;
+  const poly<double> size_squared = lean * lean - across * across;
+  const poly<double> least = (lean * lean + across * across) * kLeastShare + kNotZero;
+  const poly<double> x = cn::flip_sign(across, lean) * cn::sqrt(y0z_squared / cn::max(size_squared, least));
   return cn::min(cn::max(x, view.x0), view.x1);
 }
 
 /// Within a column the sine of the elevation is uniform.
 inline poly<double> rectangle_row(const RectangleView& view, const poly<double>& x, const poly<double>& v) {
   const poly<double> column_squared = x * x + view.z * view.z;
-  const poly<double> low = view.y0 / cn::sqrt(column_squared + view.y0 * view.y0);
-  const poly<double> high = view.y1 / cn::sqrt(column_squared + view.y1 * view.y1);
-  const poly<double> sine = lerp(low, high, v);
-  const poly<double> y = sine * cn::sqrt(column_squared / at_least_tiny(1.0 - sine * sine));
+  const poly<double> low_size = cn::sqrt(column_squared + view.y0 * view.y0);
+  const poly<double> high_size = cn::sqrt(column_squared + view.y1 * view.y1);
+  // The sine and its 1, both times the same size.
+  const poly<double> one = low_size * high_size;
+  const poly<double> sine = lerp(view.y0 * high_size, view.y1 * low_size, v);
+  const poly<double> cosine_squared = cn::max((one - sine) * (one + sine), one * one * kLeastShare);
+  const poly<double> y = sine * cn::sqrt(column_squared / cosine_squared);
   return cn::min(cn::max(y, view.y0), view.y1);
 }
 
@@ -182,15 +199,20 @@ inline SolidAngleSample sample_rectangle(const LightSurface& light, const Rectan
   const poly<double> height_00 = dot(to_vertex, normal);
   const poly<double> along1 = dot(light.edge1, normal);
   const poly<double> along2 = dot(light.edge2, normal);
-  const SquareSample warped = sample_bilinear(
-      {corner_value(height_00 / view.r00), corner_value((height_00 + along1) / view.r10),
-       corner_value((height_00 + along2) / view.r01), corner_value((height_00 + along1 + along2) / view.r11)},
-      u, v);
+  // Each cosine is height / r, and the warp asks for their proportions only.
+  const poly<double> r00_r11 = view.r00 * view.r11;
+  const poly<double> r10_r01 = view.r10 * view.r01;
+  const SquareSample warped =
+      sample_bilinear({corner_height(height_00, view.r00) * view.r11 * r10_r01,
+                       corner_height(height_00 + along1, view.r10) * view.r01 * r00_r11,
+                       corner_height(height_00 + along2, view.r01) * view.r10 * r00_r11,
+                       corner_height(height_00 + along1 + along2, view.r11) * view.r00 * r10_r01},
+                      u, v);
   const poly<double> x = rectangle_column(view, warped.u);
   const poly<double> y = rectangle_row(view, x, warped.v);
-  return {
-      to_vertex + light.edge1 * ((x - view.x0) / view.length1) + light.edge2 * ((y - view.y0) / view.length2),
-      view.solid_angle, warped.pdf};
+  return {to_vertex + light.edge1 * ((x - view.x0) * view.inverse_length1) +
+              light.edge2 * ((y - view.y0) * view.inverse_length2),
+          view.solid_angle, warped.inverse_pdf};
 }
 
 /// Unit vectors to a triangle's corners, turning left as seen from its front.
@@ -245,7 +267,7 @@ inline SolidAngleSample sample_spherical_triangle(const TriangleView& view, cons
   const Direction3 moved = on_arc(view.a, view.c, within);
   const Direction3 direction = on_arc(view.b, moved, 1.0 - warped.v * (1.0 - dot(moved, view.b)));
   const poly<double> distance = z / at_least_tiny(-dot(direction, light_normal));
-  return {direction * distance, view.solid_angle, warped.pdf};
+  return {direction * distance, view.solid_angle, warped.inverse_pdf};
 }
 
 /// Uniform in solid angle but for the warp to the cosine; uniform in area where the solid angle is too small.
@@ -254,18 +276,19 @@ inline LightSample sample_light_solid_angle(const LightSurface& light, const pol
                                             const poly<double>& u, const poly<double>& v) {
   const Direction3 to_vertex = light.vertex - position;
   const poly<double> z = -dot(to_vertex, light.normal);
-  LightSample sample = sample_light_area(light, position, normal, u, v);
+  const mask is_rectangle = shape == static_cast<std::int32_t>(LightShape::rectangle);
+  const Direction3 in_rectangle = to_vertex + light.edge1 * u + light.edge2 * v;
+  const Direction3 in_triangle = sample_triangle(to_vertex, light.edge1, light.edge2, u, v);
+  LightSample sample =
+      weigh_by_area(cn::select(is_rectangle, in_rectangle, in_triangle), light.normal, normal);
   const auto take = [&](const LightSample& other) {
     sample.to_light = other.to_light;
     sample.weight = other.weight;
   };
-  const mask is_rectangle = shape == static_cast<std::int32_t>(LightShape::rectangle);
   cn::poly_if_any(is_rectangle, [&] {
-    take(weigh_by_area(to_vertex + light.edge1 * u + light.edge2 * v, light.normal, normal));
     const RectangleView view = view_rectangle(light, to_vertex);
     cn::poly_if((z > 0.0) & (view.solid_angle > kLeastSolidAngle), [&] {
-      take(weigh_by_solid_angle(sample_rectangle(light, view, to_vertex, normal, u, v), normal,
-                                view.length1 * view.length2));
+      take(weigh_by_solid_angle(sample_rectangle(light, view, to_vertex, normal, u, v), normal, view.area));
     });
   });
   cn::poly_if_any(!is_rectangle, [&] {

@@ -22,15 +22,27 @@ struct CameraRecord {
   std::int32_t height = 0;
 };
 
-/// For intersection (Moeller and Trumbore 1997). Triangles that touch in one plane share a face: a ray that
-/// leaves a face ignores it, so no distance threshold is needed to keep a surface from shadowing itself.
+/// For intersection (triangle.hpp); made by triangle_record(). Triangles that touch in one plane share a
+/// face: a ray that leaves a face ignores it, so no distance threshold is needed to keep a surface from
+/// shadowing itself.
 struct TriangleRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};
   vec3<double> edge2{};
+  vec3<double> back{};  ///< edge2 x edge1, away from the front
   std::int32_t face = kNoFace;
   std::int32_t unused = 0;
 };
+
+/// The cross product in the host's extended precision: long thin triangles cancel most of its digits, and it
+/// is made only once.
+inline TriangleRecord triangle_record(const vec3<double>& vertex, const vec3<double>& edge1,
+                                      const vec3<double>& edge2, std::int32_t face) {
+  const vec3<long double> a{edge2.x, edge2.y, edge2.z};
+  const vec3<long double> b{edge1.x, edge1.y, edge1.z};
+  const vec3<long double> back = cn::cross(a, b);
+  return {vertex, edge1, edge2, {double(back.x), double(back.y), double(back.z)}, face, 0};
+}
 
 /// For shading, one a triangle: "around 10 double precision floats" (paper, section 4.1).
 struct SurfaceRecord {

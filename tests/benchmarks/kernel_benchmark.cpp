@@ -24,12 +24,8 @@ class KernelBench {
   KernelBench() : memory(kPes, 6144), triangles(kTriangles) {
     for (int w = 0; w < 6144 / 8 - 2; ++w)
       for (int pe = 0; pe < kPes; ++pe) row(8 * w)[pe] = number();
-    for (TriangleRecord& triangle : triangles) {
-      triangle.vertex = point();
-      triangle.edge1 = point();
-      triangle.edge2 = point();
-      triangle.face = static_cast<std::int32_t>(&triangle - triangles.data()) / 2;
-    }
+    for (std::int32_t i = 0; i < kTriangles; ++i)
+      triangles[std::size_t(i)] = triangle_record(point(), point(), point(), i / 2);
   }
   double* row(int offset_bytes) { return reinterpret_cast<double*>(memory.row(offset_bytes)); }
 
@@ -68,22 +64,28 @@ void intersect(benchmark::State& state, Level level) {
   run(state, bench, kernels(level).intersect, arguments, kTriangles);
 }
 
-void scatter(benchmark::State& state, Level level) {
+void scatter(benchmark::State& state, Level level, Sampler sampler, bool casts_shadow_rays) {
   KernelBench bench;
-  LaneMask light;
+  LaneMask casts;
   ScatterArguments arguments;
   arguments.hit = PolyPointer<HitRecord>(0);
   arguments.surface = PolyPointer<SurfaceRecord>(512);
   arguments.path = PolyPointer<PathRecord>(1024);
+  arguments.light = PolyPointer<LightRecord>(2048);
   arguments.scatter = PolyPointer<ScatterRecord>(1536);
-  arguments.wants_light = &light;
+  arguments.shadow_ray = PolyPointer<RayRecord>(3072);
+  arguments.lighting = PolyPointer<LightingRecord>(3584);
+  arguments.sampler = sampler;
+  arguments.light_sampling = sampler == Sampler::sobol ? LightSampling::solid_angle : LightSampling::area;
+  arguments.casts_shadow_rays = casts_shadow_rays;
+  arguments.casts = &casts;
   run(state, bench, kernels(level).scatter, arguments, 1);
 }
 
 void fold(benchmark::State& state, Level level) {
   KernelBench bench;
   FoldArguments arguments;
-  arguments.entry = PolyPointer<FinishedRecord>(0);
+  arguments.path = {{0}, {8}, {16}, {24}, {32}};
   arguments.vertices = PolyPointer<VertexRecord>(512);
   arguments.earlier = PolyPointer<FoldRecord>(1024);
   arguments.sum = PolyPointer<FoldRecord>(1536);
@@ -101,7 +103,12 @@ struct Registration {
       using std::string;
       benchmark::RegisterBenchmark((string("intersect, each triangle and PE/") + name).c_str(), intersect,
                                    level);
-      benchmark::RegisterBenchmark((string("scatter, each PE/") + name).c_str(), scatter, level);
+      benchmark::RegisterBenchmark((string("scatter, philox, no light, each PE/") + name).c_str(), scatter,
+                                   level, Sampler::philox, false);
+      benchmark::RegisterBenchmark((string("scatter, philox, light by area, each PE/") + name).c_str(),
+                                   scatter, level, Sampler::philox, true);
+      benchmark::RegisterBenchmark((string("scatter, sobol, light by angle, each PE/") + name).c_str(),
+                                   scatter, level, Sampler::sobol, true);
       benchmark::RegisterBenchmark((string("fold, each vertex and PE/") + name).c_str(), fold, level);
     }
   }

@@ -21,8 +21,8 @@ enum class Places { array, gather };
 /// A transfer of `bytes` a PE; gathers address ascending records with gaps, as the path tracer's do.
 class Request {
  public:
-  Request(cn::Direction direction, Places places, int bytes, int enabled_pes) {
-    std::mt19937 random(1);
+  Request(cn::Direction direction, Places places, int bytes, int enabled_pes, unsigned seed) {
+    std::mt19937 random(seed);
     cn::MonoAddress next = 0;
     for (cn::MonoAddress& address : addresses_) {
       address = next;
@@ -44,20 +44,37 @@ class Request {
   cn::Transfer transfer_;
 };
 
+/// Requests that differ in which PEs take part and in their addresses: of one and the same, the host's branch
+/// predictor would know everything by heart.
+class Requests {
+ public:
+  Requests(cn::Direction direction, Places places, const benchmark::State& state) {
+    for (unsigned seed = 1; seed <= kRequests; ++seed)
+      requests_.emplace_back(direction, places, static_cast<int>(state.range(0)),
+                             static_cast<int>(state.range(1)), seed);
+  }
+  const cn::Transfer& next() { return requests_[next_++ % kRequests].transfer(); }
+
+  static constexpr std::size_t kRequests = 256;
+
+ private:
+  std::vector<Request> requests_;
+  std::size_t next_ = 0;
+};
+
 void bytes_and_pes(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"bytes", "pes"});
   for (const int bytes : {24, 56, 104, 192}) benchmark->Args({bytes, kPes});
-  benchmark->Args({104, kPes / 2});
+  for (const int bytes : {24, 56, 104}) benchmark->Args({bytes, kPes / 2});
 }
 
 template <cn::Direction direction, Places places>
 void move_data(benchmark::State& state) {
-  const Request request(direction, places, static_cast<int>(state.range(0)),
-                        static_cast<int>(state.range(1)));
+  Requests requests(direction, places, state);
   cn::PolyMemory poly(kPes, kPolyBytes);
   std::vector<std::uint8_t> mono(kMonoBytes);
   for (auto _ : state) {
-    cn::move_data(request.transfer(), poly, mono.data());
+    cn::move_data(requests.next(), poly, mono.data());
     benchmark::ClobberMemory();
   }
   state.SetBytesProcessed(state.iterations() * state.range(0) * state.range(1));
@@ -73,11 +90,10 @@ model::MonoPieces::Rules rules() {
 
 template <Places places>
 void describe(benchmark::State& state) {
-  const Request request(cn::Direction::mono_to_poly, places, static_cast<int>(state.range(0)),
-                        static_cast<int>(state.range(1)));
+  Requests requests(cn::Direction::mono_to_poly, places, state);
   model::MonoPieces pieces;
   for (auto _ : state) {
-    pieces.describe(request.transfer(), kPes, rules());
+    pieces.describe(requests.next(), kPes, rules());
     benchmark::DoNotOptimize(pieces.packets());
   }
 }
@@ -86,13 +102,13 @@ BENCHMARK(describe<Places::gather>)->Apply(bytes_and_pes);
 
 template <Places places>
 void ddr_access(benchmark::State& state) {
-  const Request request(cn::Direction::mono_to_poly, places, static_cast<int>(state.range(0)),
-                        static_cast<int>(state.range(1)));
-  model::MonoPieces pieces;
-  pieces.describe(request.transfer(), kPes, rules());
+  Requests requests(cn::Direction::mono_to_poly, places, state);
+  std::vector<model::MonoPieces> pieces(Requests::kRequests);
+  for (model::MonoPieces& request : pieces) request.describe(requests.next(), kPes, rules());
   model::DdrTiming timing(model::preset("csx600").ddr);
   model::Cycles now = 0;
-  for (auto _ : state) now = timing.access(pieces.runs(), false, now).finish;
+  std::size_t next = 0;
+  for (auto _ : state) now = timing.access(pieces[next++ % pieces.size()].runs(), false, now).finish;
   benchmark::DoNotOptimize(now);
 }
 BENCHMARK(ddr_access<Places::array>)->Apply(bytes_and_pes);

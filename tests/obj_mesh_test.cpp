@@ -12,7 +12,7 @@ namespace {
 
 using testbench::InputError;
 using testbench::load_obj_mesh;
-using testbench::ObjMesh;
+using testbench::Mesh;
 
 constexpr const char* kMaterials = "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0.25 0.5 1\nKe 4 5 6\n";
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -32,7 +32,7 @@ class ObjMeshTest : public testing::Test {
     return directory_ / name;
   }
 
-  ObjMesh load(const std::string& obj) { return load_obj_mesh(write("mesh.obj", "mtllib m.mtl\n" + obj)); }
+  Mesh load(const std::string& obj) { return load_obj_mesh(write("mesh.obj", "mtllib m.mtl\n" + obj)); }
 
   /// The error's line, after checks that it is one line and names every part.
   void expect_error(const std::string& obj, const std::vector<std::string>& parts) {
@@ -61,7 +61,7 @@ class ObjMeshTest : public testing::Test {
 TEST_F(ObjMeshTest, reads_numbers_to_the_last_bit) {
   write("m.mtl",
         "newmtl grey\nKd 0.1000000000000000055 0.73775306844182487 +1e-3\nKe 17.198711539995688 0 1E2\n");
-  const ObjMesh mesh = load(
+  const Mesh mesh = load(
       "v 549.6000000001 0.1 -0.30000000000000004\nv 123456789.12345678 1e-300 .5\nv 4.35 "
       "2.2250738585072014e-308 "
       "1.7976931348623157e8\nusemtl grey\nf 1 2 3\n");
@@ -76,7 +76,7 @@ TEST_F(ObjMeshTest, reads_numbers_to_the_last_bit) {
 
 TEST_F(ObjMeshTest, keeps_the_materials_in_use_only) {
   write("m.mtl", std::string("newmtl unused\nKd 1 1 1\n") + kMaterials);
-  const ObjMesh mesh = load(std::string(kSquare) + "usemtl lamp\nf 1 2 3\nusemtl grey\nf 1 3 4\n");
+  const Mesh mesh = load(std::string(kSquare) + "usemtl lamp\nf 1 2 3\nusemtl grey\nf 1 3 4\n");
   ASSERT_EQ(mesh.materials.size(), 2U);
   EXPECT_EQ(mesh.materials[0].name, "grey");
   EXPECT_EQ(mesh.materials[1].name, "lamp");
@@ -88,7 +88,7 @@ TEST_F(ObjMeshTest, keeps_the_materials_in_use_only) {
 }
 
 TEST_F(ObjMeshTest, reads_crlf_comments_groups_and_relative_indices) {
-  const ObjMesh mesh = load(
+  const Mesh mesh = load(
       "# a comment\r\no thing\r\nv 0 0 0\r\n  v 1 0 0\r\nv\t0 1 0 1.0\r\nusemtl grey\r\ng part\r\nf -3/1/1 "
       "-2// -1\r\nvt 0 "
       "0\r\nvn 0 0 1\r\n");
@@ -99,12 +99,12 @@ TEST_F(ObjMeshTest, reads_crlf_comments_groups_and_relative_indices) {
 
 // The shorter diagonal of this quad is 2-4; the fan from the first vertex uses 1-3.
 TEST_F(ObjMeshTest, cuts_convex_polygons_into_a_fan_from_the_first_vertex) {
-  const ObjMesh quad = load("v 0 0 0\nv 2 -1 0\nv 4 0 0\nv 2 1 0\nusemtl grey\nf 1 2 3 4\n");
+  const Mesh quad = load("v 0 0 0\nv 2 -1 0\nv 4 0 0\nv 2 1 0\nusemtl grey\nf 1 2 3 4\n");
   ASSERT_EQ(quad.triangles.size(), 2U);
   EXPECT_EQ(quad.triangles[0].vertex[2], glm::dvec3(4, 0, 0));
   EXPECT_EQ(quad.triangles[1].vertex[1], glm::dvec3(4, 0, 0));
   EXPECT_EQ(quad.triangles[1].vertex[2], glm::dvec3(2, 1, 0));
-  const ObjMesh pentagon = load("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nusemtl grey\nf 1 2 3 4 5\n");
+  const Mesh pentagon = load("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nusemtl grey\nf 1 2 3 4 5\n");
   ASSERT_EQ(pentagon.triangles.size(), 3U);
   for (const auto& t : pentagon.triangles) EXPECT_EQ(t.vertex[0], glm::dvec3(0));
 }
@@ -112,7 +112,7 @@ TEST_F(ObjMeshTest, cuts_convex_polygons_into_a_fan_from_the_first_vertex) {
 // A dart: vertex 3 is dented inwards, so only the diagonal 1-3 lies inside; listed from each of its vertices.
 TEST_F(ObjMeshTest, cuts_concave_quads_along_the_inner_diagonal) {
   for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
-    const ObjMesh mesh = load(std::string("v 0 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nusemtl grey\n") + face + "\n");
+    const Mesh mesh = load(std::string("v 0 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nusemtl grey\n") + face + "\n");
     double area = 0.0;
     ASSERT_EQ(mesh.triangles.size(), 2U);
     for (const auto& t : mesh.triangles) {
@@ -136,7 +136,7 @@ TEST_F(ObjMeshTest, refuses_a_polygon_no_fan_covers) {
 }
 
 TEST_F(ObjMeshTest, drops_and_counts_triangles_without_area) {
-  const ObjMesh mesh = load(
+  const Mesh mesh = load(
       "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 0.1 0.1 0.1\nv 0.2 0.2 0.2\nv 0.3 0.3 0.3\nusemtl grey\nf 1 2 "
       "3\nf 1 1 4\nf "
       "5 6 7\nf 1 2 4\n");
@@ -145,7 +145,7 @@ TEST_F(ObjMeshTest, drops_and_counts_triangles_without_area) {
 }
 
 TEST_F(ObjMeshTest, keeps_small_and_thin_triangles) {
-  const ObjMesh mesh =
+  const Mesh mesh =
       load("v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nv 1 0 0\nv 0 1e-9 0\nusemtl grey\nf 1 2 3\nf 1 4 5\n");
   EXPECT_EQ(mesh.triangles.size(), 2U);
   EXPECT_EQ(mesh.degenerate_triangles, 0U);
@@ -222,7 +222,7 @@ std::string grid(int n) {
   return obj;
 }
 
-double total_area(const ObjMesh& mesh) {
+double total_area(const Mesh& mesh) {
   double area = 0.0;
   for (const auto& t : mesh.triangles)
     area += 0.5 * glm::cross(t.vertex[1] - t.vertex[0], t.vertex[2] - t.vertex[0]).z;
@@ -230,7 +230,7 @@ double total_area(const ObjMesh& mesh) {
 }
 
 TEST_F(ObjMeshTest, loads_a_thousand_triangles) {
-  const ObjMesh mesh = load(grid(25));
+  const Mesh mesh = load(grid(25));
   EXPECT_EQ(mesh.triangles.size(), 1250U);
   EXPECT_NEAR(total_area(mesh), 1.0, 1e-12);
 }
@@ -238,7 +238,7 @@ TEST_F(ObjMeshTest, loads_a_thousand_triangles) {
 TEST_F(ObjMeshTest, loads_a_million_triangles_quickly) {
   const std::string obj = grid(708);
   const auto begin = std::chrono::steady_clock::now();
-  const ObjMesh mesh = load(obj);
+  const Mesh mesh = load(obj);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   EXPECT_EQ(mesh.triangles.size() + mesh.degenerate_triangles, 2U * 708U * 708U);
   EXPECT_EQ(mesh.degenerate_triangles, 0U);

@@ -107,7 +107,7 @@ std::optional<std::size_t> fan_start(const Polygon& polygon) {
 /// Turns the polygons tinyobjloader read into triangles of a mesh.
 class MeshBuilder {
  public:
-  MeshBuilder(const std::filesystem::path& file, const std::vector<glm::dvec3>& vertices, ObjMesh& mesh)
+  MeshBuilder(const std::filesystem::path& file, const std::vector<glm::dvec3>& vertices, Mesh& mesh)
       : file_(file), vertices_(vertices), mesh_(mesh) {}
 
   void add_shape(const tinyobj::shape_t& shape) {
@@ -157,7 +157,7 @@ class MeshBuilder {
 
   const std::filesystem::path& file_;
   const std::vector<glm::dvec3>& vertices_;
-  ObjMesh& mesh_;
+  Mesh& mesh_;
   Polygon polygon_;
 };
 
@@ -170,32 +170,9 @@ void require_materials(const std::filesystem::path& file, const tinyobj::shape_t
   }
 }
 
-/// Keeps the materials that triangles use and renumbers them.
-void keep_used_materials(const std::vector<Material>& all, ObjMesh& mesh) {
-  std::vector<std::int32_t> new_index(all.size(), -1);
-  for (const Triangle& triangle : mesh.triangles) new_index[static_cast<std::size_t>(triangle.material)] = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (new_index[i] < 0) continue;
-    new_index[i] = static_cast<std::int32_t>(mesh.materials.size());
-    mesh.materials.push_back(all[i]);
-  }
-  for (Triangle& triangle : mesh.triangles) {
-    triangle.material = new_index[static_cast<std::size_t>(triangle.material)];
-  }
-}
-
 }  // namespace
 
-bool is_degenerate(const Triangle& triangle) {
-  const glm::dvec3 edges[3] = {triangle.vertex[1] - triangle.vertex[0],
-                               triangle.vertex[2] - triangle.vertex[1],
-                               triangle.vertex[0] - triangle.vertex[2]};
-  const double longest = std::max({glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2])});
-  const double height_times_longest = glm::length(glm::cross(edges[0], edges[1]));
-  return !(height_times_longest > 1e-12 * longest * longest);
-}
-
-ObjMesh load_obj_mesh(const std::filesystem::path& obj_file) {
+Mesh load_obj_mesh(const std::filesystem::path& obj_file) {
   const std::string text = read_text(obj_file, "");
   const std::vector<glm::dvec3> vertices = scan_vertices(obj_file, text);
 
@@ -219,7 +196,7 @@ ObjMesh load_obj_mesh(const std::filesystem::path& obj_file) {
                      "tinyobjloader found a different number; allowed: plain 'v x y z' lines");
   }
 
-  ObjMesh mesh;
+  Mesh mesh;
   MeshBuilder builder(obj_file, vertices, mesh);
   for (const tinyobj::shape_t& shape : shapes) builder.add_shape(shape);
   if (!warning.empty())

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "testbench/error.hpp"
+#include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/obj_mesh.hpp"
 
 namespace testbench {
@@ -167,17 +168,21 @@ class TableReader {
   const toml::table& table_;
 };
 
-std::filesystem::path toml_path(const std::filesystem::path& scene) {
+bool is_gltf(const std::filesystem::path& file) {
+  return file.extension() == ".gltf" || file.extension() == ".glb";
+}
+
+constexpr const char* kSceneFiles = "a directory that holds scene.toml, or a .toml, .gltf or .glb file";
+
+std::filesystem::path scene_path(const std::filesystem::path& scene) {
   std::error_code error;
   const std::filesystem::path file =
       std::filesystem::is_directory(scene, error) ? scene / "scene.toml" : scene;
   if (!std::filesystem::is_regular_file(file, error)) {
-    fail(scene.string(), "scene", "no file " + file.string(),
-         "a directory that holds scene.toml, or a .toml file");
+    fail(scene.string(), "scene", "no file " + file.string(), kSceneFiles);
   }
-  if (file.extension() != ".toml") {
-    fail(scene.string(), "scene", "a file named " + file.filename().string(),
-         "a directory that holds scene.toml, or a .toml file");
+  if (file.extension() != ".toml" && !is_gltf(file)) {
+    fail(scene.string(), "scene", "a file named " + file.filename().string(), kSceneFiles);
   }
   return file;
 }
@@ -244,20 +249,27 @@ glm::dmat4 read_transform(const TableReader& table) {
   return glm::scale(transform, glm::dvec3(scale));
 }
 
-bool is_in_range(const Triangle& triangle) {
-  for (const glm::dvec3& vertex : triangle.vertex) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(std::abs(vertex[axis]) <= kMaxCoordinate)) return false;
-    }
-  }
-  return true;
+GltfFile load_mesh_file(const std::filesystem::path& file) {
+  if (is_gltf(file)) return load_gltf(file);
+  return {load_obj_mesh(file), std::nullopt};
 }
 
-void add_mesh(const TableReader& table, const std::filesystem::path& directory, Scene& scene) {
+Camera moved(Camera camera, const glm::dmat4& transform) {
+  camera.position = glm::dvec3(transform * glm::dvec4(camera.position, 1.0));
+  camera.direction = glm::normalize(glm::dmat3(transform) * camera.direction);
+  camera.up = glm::normalize(glm::dmat3(transform) * camera.up);
+  return camera;
+}
+
+/// @param camera takes the file's camera, if it holds one and there was none before
+void add_mesh(const TableReader& table, const std::filesystem::path& directory, Scene& scene,
+              std::optional<Camera>& camera) {
   table.require_only({"file", "scale", "rotate_degrees", "translate"});
   const bool is_moved = table.has("scale") || table.has("rotate_degrees") || table.has("translate");
   const glm::dmat4 transform = read_transform(table);
-  const ObjMesh mesh = load_obj_mesh(directory / table.text("file"));
+  const GltfFile file = load_mesh_file(directory / table.text("file"));
+  if (file.camera && !camera) camera = moved(file.camera->camera, transform);
+  const Mesh& mesh = file.mesh;
   const auto first_material = static_cast<std::int32_t>(scene.materials.size());
   scene.materials.insert(scene.materials.end(), mesh.materials.begin(), mesh.materials.end());
   scene.degenerate_triangles += mesh.degenerate_triangles;
@@ -294,15 +306,17 @@ FilmSize read_film(const toml::table& root, const std::string& file) {
   return {film.pixels("width"), film.pixels("height")};
 }
 
-void add_meshes(const toml::table& root, const std::filesystem::path& file, Scene& scene) {
+std::optional<Camera> add_meshes(const toml::table& root, const std::filesystem::path& file, Scene& scene) {
   const toml::array* meshes = root.get_as<toml::array>("mesh");
   if (meshes == nullptr || meshes->empty() || !meshes->is_array_of_tables()) {
     fail(file.string(), "mesh", root.contains("mesh") ? "no array of tables" : "nothing",
          "one [[mesh]] table or more");
   }
+  std::optional<Camera> camera;
   for (const toml::node& node : *meshes) {
-    add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), scene);
+    add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), scene, camera);
   }
+  return camera;
 }
 
 void require_renderable(const Scene& scene, const std::string& file) {
@@ -311,23 +325,46 @@ void require_renderable(const Scene& scene, const std::string& file) {
     return scene.materials[static_cast<std::size_t>(triangle.material)].emission != glm::dvec3(0.0);
   };
   if (std::none_of(scene.triangles.begin(), scene.triangles.end(), emits)) {
-    fail(file, "mesh", "no light", "one triangle or more with a material whose Ke is above 0");
+    fail(file, "mesh", "no light",
+         "one triangle or more with a material that emits (OBJ: Ke, glTF: emissiveFactor)");
   }
+}
+
+/// A mesh file that is a scene of its own.
+Scene gltf_scene(const std::filesystem::path& file) {
+  GltfFile gltf = load_gltf(file);
+  if (!gltf.camera) fail(file.string(), "camera", "none", "one that a node of the scene holds");
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.camera = gltf.camera->camera;
+  scene.film = {kDefaultFilmPixels, kDefaultFilmPixels};
+  const double width = kDefaultFilmPixels * gltf.camera->aspect_ratio.value_or(1.0);
+  scene.film.width = static_cast<int>(std::clamp(std::round(width), 1.0, double(kMaxFilmPixels)));
+  scene.materials = std::move(gltf.mesh.materials);
+  scene.triangles = std::move(gltf.mesh.triangles);
+  scene.degenerate_triangles = gltf.mesh.degenerate_triangles;
+  require_renderable(scene, file.string());
+  return scene;
 }
 
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path) {
-  const std::filesystem::path file = toml_path(path);
+  const std::filesystem::path file = scene_path(path);
+  if (is_gltf(file)) return gltf_scene(file);
   const toml::table root = parse(file);
   TableReader(file.string(), "", root).require_only({"camera", "film", "mesh"});
 
   Scene scene;
   const std::filesystem::path absolute = std::filesystem::absolute(file).lexically_normal();
   scene.name = (file.filename() == "scene.toml" ? absolute.parent_path().filename() : file.stem()).string();
-  scene.camera = read_camera(subtable(root, file.string(), "camera"));
   scene.film = read_film(root, file.string());
-  add_meshes(root, file, scene);
+  std::optional<Camera> camera;
+  if (root.contains("camera")) camera = read_camera(subtable(root, file.string(), "camera"));
+  const std::optional<Camera> of_mesh = add_meshes(root, file, scene);
+  if (!camera) camera = of_mesh;
+  if (!camera) fail(file.string(), "camera", "nothing", "one [camera] table, or a mesh file that holds one");
+  scene.camera = *camera;
   require_renderable(scene, file.string());
   return scene;
 }

@@ -6,10 +6,10 @@
 namespace model {
 
 // poly.code_quality_factor
-inline constexpr const char* kPaperCodeQualityFactor = "7.9684";
+inline constexpr const char* kPaperCodeQualityFactor = "9.4135";
 // pio.per_pe_cycles
 inline constexpr const char* kPaperPerPeCycles = "20";
 // control.transfer_call_cycles
-inline constexpr const char* kPaperTransferCallCycles = "3065";
+inline constexpr const char* kPaperTransferCallCycles = "2888";
 
 }  // namespace model

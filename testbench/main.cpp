@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
   testbench::add_reproduce_command(app);
   testbench::add_calibrate_command(app);
   testbench::add_params_command(app);
+  testbench::add_scene_command(app);
   testbench::add_bench_command(app);
   testbench::add_validate_command(app);
   try {

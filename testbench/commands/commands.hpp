@@ -10,6 +10,7 @@ void add_render_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_params_command(CLI::App& app);
+void add_scene_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 

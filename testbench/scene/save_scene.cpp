@@ -1,0 +1,98 @@
+#include "testbench/scene/save_scene.hpp"
+
+#include <toml++/toml.h>
+
+#include <array>
+#include <cstring>
+#include <glm/gtc/constants.hpp>
+#include <sstream>
+#include <string>
+#include <unordered_map>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/error.hpp"
+
+namespace testbench {
+namespace {
+
+/// Enough digits to read the same number back.
+std::string text_of(double number) {
+  char text[32];
+  const int length = std::snprintf(text, sizeof(text), "%.17g", number);
+  return std::string(text, std::size_t(length));
+}
+
+std::string text_of(const glm::dvec3& v) {
+  return text_of(v.x) + " " + text_of(v.y) + " " + text_of(v.z);
+}
+
+std::string mtl_of(const Scene& scene) {
+  std::string text;
+  for (const Material& material : scene.materials)
+    text += "newmtl " + material.name + "\nKd " + text_of(material.reflectance) + "\nKe " +
+            text_of(material.emission) + "\n";
+  return text;
+}
+
+struct BitsHash {
+  std::size_t operator()(const std::array<std::uint64_t, 3>& bits) const {
+    return (bits[0] * 0x9e3779b97f4a7c15u) ^ (bits[1] * 0xc2b2ae3d27d4eb4fu) ^
+           (bits[2] * 0x165667b19e3779f9u);
+  }
+};
+
+/// Points that triangles share are written once.
+std::string obj_of(const Scene& scene) {
+  std::string text = "mtllib mesh.mtl\n";
+  std::string faces;
+  std::unordered_map<std::array<std::uint64_t, 3>, std::size_t, BitsHash> number_of;
+  std::int32_t material = -1;
+  for (const Triangle& triangle : scene.triangles) {
+    if (triangle.material != material) {
+      material = triangle.material;
+      faces += "usemtl " + scene.materials[std::size_t(material)].name + "\n";
+    }
+    faces += "f";
+    for (const glm::dvec3& vertex : triangle.vertex) {
+      std::array<std::uint64_t, 3> bits;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        std::memcpy(&bits[axis], &vertex[int(axis)], sizeof(double));
+      const auto [entry, is_new] = number_of.emplace(bits, number_of.size() + 1);
+      if (is_new) text += "v " + text_of(vertex) + "\n";
+      faces += " " + std::to_string(entry->second);
+    }
+    faces += "\n";
+  }
+  return text + faces;
+}
+
+std::string toml_of(const Scene& scene) {
+  const auto vector = [](const glm::dvec3& v) { return toml::array{v.x, v.y, v.z}; };
+  const Camera& camera = scene.camera;
+
+  const toml::table table{
+      {"camera", toml::table{{"position", vector(camera.position)},
+                             {"direction", vector(camera.direction)},
+                             {"up", vector(camera.up)},
+                             {"vertical_fov_degrees",
+                              camera.vertical_field_of_view_radians * (180.0 / glm::pi<double>())}}},
+      {"film", toml::table{{"width", scene.film.width}, {"height", scene.film.height}}},
+      {"mesh", toml::array{toml::table{{"file", "mesh.obj"}}}}};
+  std::ostringstream text;
+  text << table << "\n";
+  return text.str();
+}
+
+}  // namespace
+
+void save_scene(const Scene& scene, const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (!std::filesystem::is_directory(directory))
+    throw InputError(directory.string() + ": cannot be made; allowed: a directory that can be written");
+  write_bytes_atomically(directory / "mesh.mtl", mtl_of(scene));
+  write_bytes_atomically(directory / "mesh.obj", obj_of(scene));
+  write_bytes_atomically(directory / "scene.toml", toml_of(scene));
+}
+
+}  // namespace testbench

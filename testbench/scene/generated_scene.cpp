@@ -181,6 +181,7 @@ Scene stadium(int triangles) {
   scene.camera.position = {0.0, 1.5 * kBlobRadius, -4.0 * kBlobRadius};
   scene.camera.vertical_field_of_view_radians = glm::radians(40.0);
   add_quad(scene, {-kRadius, 0, -kRadius}, {0, 0, 2 * kRadius}, {2 * kRadius, 0, 0}, kGreen);
+  scene.materials[kLight].emission = {1.7, 1.6, 1.4};  // so large a lamp need not be bright
   const double lamp = 0.4 * kRadius;
   add_quad(scene, {-lamp, 0.8 * kRadius, -lamp}, {2 * lamp, 0, 0}, {0, 0, 2 * lamp}, kLight);
   const int sides = std::max(8, triangles / 4 / (4 * kRows));

@@ -53,6 +53,8 @@ class DdrTiming::Burst {
     statistics.page_misses += misses_;
     statistics.busy_cycles += busy_cycles_;
     ddr_.bus_free_ = bus_free_;
+    if (ddr_.observer_ != nullptr)
+      ddr_.observer_->accessed(ddr_.bus_direction_ == BusDirection::write, start, bus_free_);
     return {start, bus_free_ + ddr_.ecc_cycles_, misses_ == 0};
   }
 
@@ -78,6 +80,8 @@ class DdrTiming::Burst {
     ++pages_;
     misses_ += !hit;
     busy_cycles_ += transfer_cycles;
+    if (ddr_.command_observer_ != nullptr)
+      ddr_.report_commands(banks_.remainder(page), row, hit, command, start, bus_free_);
     return start;
   }
 
@@ -93,6 +97,16 @@ class DdrTiming::Burst {
   std::uint64_t misses_ = 0;
   Cycles busy_cycles_ = 0;
 };
+
+void DdrTiming::report_commands(std::size_t bank, std::uint64_t row, bool hit, Cycles command, Cycles start,
+                                Cycles finish) {
+  const bool write = bus_direction_ == BusDirection::write;
+  const int number = static_cast<int>(bank);
+  if (!hit) command_observer_->commanded(number, DdrCommand::activate, row, command);
+  command_observer_->commanded(number, write ? DdrCommand::write : DdrCommand::read, row,
+                               start - page_hit_cycles_);
+  command_observer_->moved_data(write, start, finish);
+}
 
 DdrTiming::Access DdrTiming::access(cn::MonoAddress address, std::uint64_t bytes, bool write,
                                     Cycles arrival) {
@@ -124,6 +138,8 @@ void DdrTiming::refresh_until(Cycles now) {
   const Cycles latest = next_refresh_ + (due - 1) * refresh_interval_cycles_;
   const Cycles over = std::max(latest, bus_free_) + refresh_cycles_;
   for (Bank& bank : bank_) bank = {kNoRow, over};
+  if (command_observer_ != nullptr)
+    command_observer_->commanded(-1, DdrCommand::refresh, 0, over - refresh_cycles_);
   statistics_.refreshes += due;
   next_refresh_ = latest + refresh_interval_cycles_;
 }

@@ -158,10 +158,11 @@ void WaveProbe::spent(CycleCause cause, Cycles start, Cycles finish, int semapho
   wake_for(finish);
 }
 
-void WaveProbe::end_control(Cycles at) {
-  if (control_finish_ > at) return;
+/// Nothing follows the last span yet, or ever.
+void WaveProbe::end_control() {
   change(control_stream, control_finish_, WaveSignal::control_state, 0);
   change(control_stream, control_finish_, WaveSignal::control_semaphore, kNoSemaphore);
+  control_finish_ = std::numeric_limits<Cycles>::max();  // until there is another
 }
 
 void WaveProbe::kernel_details(const KernelDetails& details) {
@@ -293,7 +294,7 @@ void WaveProbe::ended_transfer(bool, std::uint64_t, Cycles, Cycles finish) {
 
 void WaveProbe::finish() {
   const Cycles end = clock_.cycle_at(sc_core::sc_time_stamp());
-  end_control(end);
+  if (control_finish_ <= end) end_control();
   recorder_.finish(end);
   if (recorder_.last_recorded() > recorder_.first_recorded()) return;
   throw WaveError("waves: found nothing that ran in the windows (" + windows_text_ +
@@ -333,7 +334,10 @@ void WaveProbe::change(std::size_t stream, Cycles cycle, WaveSignal signal, std:
 void WaveProbe::advance() {
   wake_pending_ = false;
   const Cycles now = clock_.cycle_at(sc_core::sc_time_stamp());
-  recorder_.advance_to(now - std::min(now, kLatestReport));
+  const Cycles end = now - std::min(now, kLatestReport);
+  const bool in_a_span = span_ && span_->first >= control_finish_;
+  if (control_finish_ < end && !in_a_span) end_control();
+  recorder_.advance_to(end);
   if (latest_reported_ > now) wake_for(latest_reported_);
 }
 

@@ -124,7 +124,7 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
   void change_memory_counters(Cycles cycle);
   void count_block(Cycles start);
   std::uint64_t main_class(const cn::IssueTree& issued) const;
-  void end_control(Cycles at);
+  void end_control();
 
   void place_signals();
   static std::vector<WaveRecorder::Signal> recorded_signals(const std::vector<WaveInstance>& signals);

@@ -110,7 +110,7 @@ std::vector<std::string> level_names() {
 void ObservationOption::add_to(CLI::App& command) {
   const std::string group = "Waves and logs";
   command
-      .add_option("--waves,--vcd", waves_,
+      .add_option("--waves", waves_,
                   "Write waves (.vcd, or .fst by way of vcd2fst) and a GTKWave view beside them (.gtkw)")
       ->group(group);
   command
@@ -125,7 +125,7 @@ void ObservationOption::add_to(CLI::App& command) {
       ->group(group);
   command.add_option("--waves-pes", pes_, "PEs to show one by one, as in 0,5,90-95")->group(group);
   command
-      .add_option("--waves-window,--vcd-cycles", windows_,
+      .add_option("--waves-window", windows_,
                   "Part of the run to show, FIRST:LAST in cycles or times (8.1ms:9ms); may be repeated "
                   "(default: all)")
       ->allow_extra_args(false)

@@ -80,7 +80,7 @@ void add_control(Rows& rows) {
         Names{{0, "none"}}},
        {Signal::control_semaphore, "control", "semaphore", 8, kNumber, kUnits, kChip, kOther,
         "semaphore that is signalled or waited on", WaveNames::semaphores, Names{{kNoSemaphore, "none"}}},
-       {Signal::control_thread, "control.thread", "state", 2, kNumber, kUnits, WaveCount::thread, kOther,
+       {Signal::control_thread, "control.thread", "state", 2, kNumber, kDetail, WaveCount::thread, kOther,
         "what a hardware thread does", kFixed, thread_state_names()}});
 }
 

@@ -38,7 +38,7 @@ std::vector<std::string> lines_of(const ViewOptions& view) {
 std::vector<std::string> signals_of(const std::vector<std::string>& lines) {
   std::vector<std::string> names;
   for (const std::string& line : lines)
-    if (line.rfind("csx600.", 0) == 0) names.push_back(line);
+    if (line.rfind("+{", 0) == 0) names.push_back(line.substr(line.find("} ") + 2));
   return names;
 }
 
@@ -107,11 +107,11 @@ TEST(WaveView, GroupsAreClosedInTheOrderTheyWereOpened) {
 
 TEST(WaveView, FiltersStandBeforeTheirSignals) {
   const std::vector<std::string> lines = lines_of(options());
-  const auto kernel = std::find(lines.begin(), lines.end(), "csx600.control.kernel[15:0]");
+  const auto kernel = std::find(lines.begin(), lines.end(), "+{kernel} csx600.control.kernel[15:0]");
   ASSERT_NE(kernel, lines.end());
   EXPECT_EQ(*(kernel - 1), "^2 run.kernels.txt");
   EXPECT_EQ(*(kernel - 3), "@2024") << "right-justified decimal through a file filter";
-  const auto semaphore = std::find(lines.begin(), lines.end(), "csx600.control.semaphore[7:0]");
+  const auto semaphore = std::find(lines.begin(), lines.end(), "+{semaphore} csx600.control.semaphore[7:0]");
   ASSERT_NE(semaphore, lines.end());
   EXPECT_EQ(*(semaphore - 2), "@24") << "no filter was given";
 }

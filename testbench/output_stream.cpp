@@ -99,6 +99,8 @@ FstFile::FstFile(const fs::path& path) : path_(path), temporary_(path) {
 
 FstFile::~FstFile() {
   if (converter_ >= 0) end_converter();
+  std::error_code ignored;  // where it keeps names until it is done
+  if (!temporary_.path().empty()) fs::remove(temporary_.path().string() + ".hier", ignored);
 }
 
 /// A socket rather than a pipe: send() can be told not to raise a signal when the reader is gone.

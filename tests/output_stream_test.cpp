@@ -156,9 +156,12 @@ TEST_F(OutputStream, ConverterThatEndsEarlyIsTold) {
 }
 
 TEST_F(OutputStream, ConverterThatIsKilledIsTold) {
-  const FakeProgram fake(directory, "vcd2fst", "kill -9 $$");
-  testbench::FstFile stream(directory / "a.fst");
-  EXPECT_NE(failure_of([&] { stream.finish(); }).find("ended by signal 9"), std::string::npos);
+  {
+    const FakeProgram fake(directory, "vcd2fst", "touch \"$2.hier\"; kill -9 $$");
+    testbench::FstFile stream(directory / "a.fst");
+    EXPECT_NE(failure_of([&] { stream.finish(); }).find("ended by signal 9"), std::string::npos);
+  }
+  EXPECT_TRUE(directory_is_empty());
 }
 
 TEST_F(OutputStream, FstThatIsCutShortIsTold) {

@@ -1,7 +1,8 @@
 #include "model/vcd_writer.hpp"
 
-#include <array>
+#include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <utility>
 
 namespace model {
@@ -12,16 +13,6 @@ constexpr std::size_t kLongestLine = 128;
 
 constexpr char kFirstCode = '!';
 constexpr std::size_t kCodes = '~' - '!' + 1;
-
-/// Short names of printable characters.
-std::string code_of(std::size_t number) {
-  std::string code;
-  do {
-    code += static_cast<char>(kFirstCode + number % kCodes);
-    number /= kCodes;
-  } while (number > 0);
-  return code;
-}
 
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts(1);
@@ -35,32 +26,34 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-void append_bits(std::string& text, std::uint64_t value) {
-  std::array<char, 64> bits;
-  auto first = bits.size();
-  do {
-    bits[--first] = static_cast<char>('0' + (value & 1));
-    value >>= 1;
-  } while (value > 0);
-  text.append(&bits[first], bits.size() - first);
+char* put_bits(char* out, std::uint64_t value) {
+  for (int bit = 63 - __builtin_clzll(value | 1); bit >= 0; --bit)
+    *out++ = static_cast<char>('0' + ((value >> bit) & 1));
+  return out;
 }
 
 }  // namespace
 
-VcdWriter::VcdWriter(TextSink sink, const std::vector<Signal>& signals) : sink_(std::move(sink)) {
-  buffer_.reserve(kBufferBytes);
+VcdWriter::VcdWriter(TextSink sink, const std::vector<Signal>& signals)
+    : sink_(std::move(sink)), buffer_(kBufferBytes) {
   for (const Signal& signal : signals) {
-    codes_.push_back(code_of(codes_.size()));
-    widths_.push_back(signal.width);
+    Code code;  // short names of printable characters
+    code.width = signal.width;
+    std::size_t number = codes_.size();
+    do {
+      code.text[code.length++] = static_cast<char>(kFirstCode + number % kCodes);
+      number /= kCodes;
+    } while (number > 0);
+    codes_.push_back(code);
   }
   define(signals);
 }
 
 void VcdWriter::define(const std::vector<Signal>& signals) {
-  buffer_ += "$version csx600 $end\n$timescale 1 ps $end\n";
+  std::string text = "$version csx600 $end\n$timescale 1 ps $end\n";
   std::vector<std::string> open;  // scopes
   const auto leave_to = [&](std::size_t depth) {
-    for (; open.size() > depth; open.pop_back()) buffer_ += "$upscope $end\n";
+    for (; open.size() > depth; open.pop_back()) text += "$upscope $end\n";
   };
   for (std::size_t i = 0; i < signals.size(); ++i) {
     std::vector<std::string> scopes = parts_of(signals[i].path);
@@ -70,63 +63,74 @@ void VcdWriter::define(const std::vector<Signal>& signals) {
     while (common < open.size() && common < scopes.size() && open[common] == scopes[common]) ++common;
     leave_to(common);
     for (; common < scopes.size(); ++common) {
-      buffer_ += "$scope module " + scopes[common] + " $end\n";
+      text += "$scope module " + scopes[common] + " $end\n";
       open.push_back(scopes[common]);
     }
     const int width = signals[i].width;
     const std::string range = width == 1 ? "" : " [" + std::to_string(width - 1) + ":0]";
-    buffer_ += "$var wire " + std::to_string(width) + " " + codes_[i] + " " + name + range + " $end\n";
+    text += "$var wire " + std::to_string(width) + " " +
+            std::string(codes_[i].text.data(), codes_[i].length) + " " + name + range + " $end\n";
   }
   leave_to(0);
-  buffer_ += "$enddefinitions $end\n";
+  text += "$enddefinitions $end\n";
+  put(text);
 }
 
 void VcdWriter::record(std::uint64_t picoseconds, const std::vector<std::uint64_t>& values) {
   time(picoseconds);
-  buffer_ += std::exchange(recorded_, true) ? "$dumpon\n" : "$dumpvars\n";
+  put(std::exchange(recorded_, true) ? "$dumpon\n" : "$dumpvars\n");
   for (std::size_t i = 0; i < values.size(); ++i) change(i, values[i]);
-  buffer_ += "$end\n";
+  put("$end\n");
 }
 
 void VcdWriter::pause(std::uint64_t picoseconds) {
   time(picoseconds);
-  buffer_ += "$dumpoff\n";
-  for (std::size_t i = 0; i < codes_.size(); ++i) {
-    room();
-    buffer_ += (widths_[i] == 1 ? "x" : "bx ") + codes_[i] + "\n";
-  }
-  buffer_ += "$end\n";
+  put("$dumpoff\n");
+  for (const Code& code : codes_)
+    put((code.width == 1 ? "x" : "bx ") + std::string(code.text.data(), code.length) + "\n");
+  put("$end\n");
 }
 
 void VcdWriter::time(std::uint64_t picoseconds) {
-  room();
-  std::array<char, 24> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), picoseconds).ptr;
-  buffer_ += '#';
-  buffer_.append(digits.data(), end);
-  buffer_ += '\n';
+  char* out = begin_line();
+  *out++ = '#';
+  out = std::to_chars(out, buffer_.data() + kBufferBytes, picoseconds).ptr;
+  *out++ = '\n';
+  end_line(out);
 }
 
 void VcdWriter::change(std::size_t signal, std::uint64_t value) {
-  room();
-  if (widths_[signal] == 1) {
-    buffer_ += static_cast<char>('0' + value);
+  const Code& code = codes_[signal];
+  char* out = begin_line();
+  if (code.width == 1) {
+    *out++ = static_cast<char>('0' + value);
   } else {
-    buffer_ += 'b';
-    append_bits(buffer_, value);
-    buffer_ += ' ';
+    *out++ = 'b';
+    out = put_bits(out, value);
+    *out++ = ' ';
   }
-  buffer_ += codes_[signal];
-  buffer_ += '\n';
+  std::memcpy(out, code.text.data(), code.text.size());
+  out += code.length;
+  *out++ = '\n';
+  end_line(out);
 }
 
-void VcdWriter::room() {
-  if (buffer_.size() + kLongestLine > kBufferBytes) flush();
+char* VcdWriter::begin_line() {
+  if (size_ + kLongestLine > kBufferBytes) flush();
+  return buffer_.data() + size_;
+}
+
+void VcdWriter::put(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view piece = text.substr(0, kLongestLine);
+    end_line(std::copy(piece.begin(), piece.end(), begin_line()));
+    text.remove_prefix(piece.size());
+  }
 }
 
 void VcdWriter::flush() {
-  sink_(buffer_);
-  buffer_.clear();
+  sink_({buffer_.data(), size_});
+  size_ = 0;
 }
 
 }  // namespace model

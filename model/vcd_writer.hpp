@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -36,13 +37,22 @@ class VcdWriter {
   void flush();
 
  private:
+  struct Code {
+    std::array<char, 4> text{};
+    std::size_t length = 0;
+    int width = 0;
+  };
+
   void define(const std::vector<Signal>& signals);
-  void room();
+  void put(std::string_view text);
+  /// Where the next line goes, with room for it; end_line() takes what was written there.
+  char* begin_line();
+  void end_line(const char* end) { size_ = std::size_t(end - buffer_.data()); }
 
   TextSink sink_;
-  std::string buffer_;
-  std::vector<std::string> codes_;
-  std::vector<int> widths_;
+  std::vector<char> buffer_;
+  std::size_t size_ = 0;
+  std::vector<Code> codes_;
   bool recorded_ = false;
 };
 

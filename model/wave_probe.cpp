@@ -70,6 +70,14 @@ WaveSignal next(WaveSignal signal) {
   return static_cast<WaveSignal>(int(signal) + 1);
 }
 
+/// Banks have a stream each, which costs time at every cycle.
+std::size_t banks_shown(const std::vector<WaveInstance>& signals, const ChipConfig& chip) {
+  const bool any = std::any_of(signals.begin(), signals.end(), [](const WaveInstance& signal) {
+    return signal.info->count == WaveCount::bank;
+  });
+  return any ? std::size_t(chip.ddr.banks) : 0;
+}
+
 }  // namespace
 
 void check_waves(const WaveConfig& config, const ChipConfig& chip) {
@@ -101,7 +109,8 @@ WaveProbe::WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& conf
       clock_(chip.chip.clock_hz),
       memory_(std::move(memory)),
       signals_((check_waves(config, chip), select_waves(chip, config.selection))),
-      recorder_(std::move(sink), recorded_signals(signals_), clock_, first_bank_stream + chip.ddr.banks),
+      recorder_(std::move(sink), recorded_signals(signals_), clock_,
+                std::size_t(first_bank_stream) + banks_shown(signals_, chip)),
       windows_text_(text_of_windows(config)),
       blocks_(config.blocks) {
   place_signals();

@@ -12,27 +12,10 @@
 #include "model/chip_config.hpp"
 #include "model/chip_observer.hpp"
 #include "model/clock_domain.hpp"
+#include "model/wave_config.hpp"
 #include "model/wave_recorder.hpp"
-#include "model/wave_selection.hpp"
 
 namespace model {
-
-/// The blocks whose kernels are the first-th, counted from 1, and the `count` - 1 after it; up to where the
-/// kernels of the next one begin.
-struct BlockWindow {
-  std::uint64_t first = 1;
-  std::uint64_t count = std::numeric_limits<std::uint64_t>::max();
-};
-
-struct WaveConfig {
-  WaveSelection selection;
-  /// What is recorded; nothing named: the whole run.
-  std::vector<CycleWindow> windows;
-  std::vector<BlockWindow> blocks;
-};
-
-/// Throws WaveError if the selection or a window is empty.
-void check_waves(const WaveConfig& config, const ChipConfig& chip);
 
 /// Running counts of the memory side, as booked by now.
 struct MemoryCounters {

@@ -6,7 +6,7 @@ namespace model {
 namespace {
 
 /// Of a stream, written already: storage is given back in pieces of this many.
-constexpr std::size_t kKeptChanges = 4096;
+constexpr std::size_t kKeptChanges = 512;
 
 std::vector<VcdWriter::Signal> vcd_signals(const std::vector<WaveRecorder::Signal>& signals) {
   std::vector<VcdWriter::Signal> vcd;
@@ -17,8 +17,8 @@ std::vector<VcdWriter::Signal> vcd_signals(const std::vector<WaveRecorder::Signa
 }  // namespace
 
 WaveRecorder::WaveRecorder(TextSink sink, const std::vector<Signal>& signals, const ClockDomain& clock,
-                           int streams)
-    : clock_(clock), writer_(std::move(sink), vcd_signals(signals)), streams_(std::size_t(streams)) {
+                           std::size_t streams)
+    : clock_(clock), writer_(std::move(sink), vcd_signals(signals)), streams_(streams) {
   for (const Signal& signal : signals) {
     rules_.push_back(signal.rule);
     values_.push_back(signal.initial);
@@ -49,9 +49,9 @@ void WaveRecorder::change(std::size_t stream, Cycles cycle, std::size_t signal, 
     cycle = written_until_;
   }
   Stream& to = streams_[stream];
-  auto place = to.changes.end();
-  while (place != to.changes.begin() + std::ptrdiff_t(to.head) && std::prev(place)->cycle > cycle) --place;
-  to.changes.insert(place, Change{cycle, value, signal});
+  to.changes.push_back({cycle, value, signal});
+  for (std::size_t i = to.changes.size() - 1; i > to.head && to.changes[i - 1].cycle > cycle; --i)
+    std::swap(to.changes[i - 1], to.changes[i]);
   to.next = to.changes[to.head].cycle;
 }
 

@@ -6,14 +6,9 @@
 
 #include "model/clock_domain.hpp"
 #include "model/vcd_writer.hpp"
+#include "model/wave_config.hpp"
 
 namespace model {
-
-/// Cycles [first, last).
-struct CycleWindow {
-  Cycles first = 0;
-  Cycles last = std::numeric_limits<Cycles>::max();
-};
 
 /// Brings changes that come in several streams, each in the order of time, into one order, and writes those
 /// within the windows as a VCD. Windows may be added while it runs; what they cover together is written once.
@@ -31,7 +26,8 @@ class WaveRecorder {
     Rule rule;
   };
 
-  WaveRecorder(TextSink sink, const std::vector<Signal>& signals, const ClockDomain& clock, int streams);
+  WaveRecorder(TextSink sink, const std::vector<Signal>& signals, const ClockDomain& clock,
+               std::size_t streams);
 
   void add_window(const CycleWindow& window);
   /// Opens or closes a window whose other end is not known.

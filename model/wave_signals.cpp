@@ -123,11 +123,11 @@ void add_memory(Rows& rows) {
   const Names commands = {{0, "none"}, {1, "activate"}, {2, "read"}, {3, "write"}, {4, "refresh"}};
   rows.insert(
       rows.end(),
-      {{Signal::clear_connect_to_ddr, "clear_connect", "to_ddr", 2, kNumber, kUnits, kChip, kOther,
+      {{Signal::clear_connect_to_ddr, "clear_connect", "to_ddr", 2, kNumber, kDetail, kChip, kOther,
         "whose requests or write data occupy the port to the DDR", kFixed, owners},
-       {Signal::clear_connect_from_ddr, "clear_connect", "from_ddr", 2, kNumber, kUnits, kChip, kOther,
+       {Signal::clear_connect_from_ddr, "clear_connect", "from_ddr", 2, kNumber, kDetail, kChip, kOther,
         "whose read data occupy the port from the DDR", kFixed, owners},
-       {Signal::clear_connect_pio_bytes, "clear_connect", "pio_bytes", 64, kNumber, kDetail, kChip, kOther,
+       {Signal::clear_connect_pio_bytes, "clear_connect", "pio_bytes", 64, kNumber, kUnits, kChip, kOther,
         "bytes so far that crossed the on-chip network for programmed I/O"},
        {Signal::ddr_bus, "ddr", "bus", 2, kNumber, kUnits, kChip, kOther,
         "access that has the data bus, from its first byte to its last, gaps between its pages included",

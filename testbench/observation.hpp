@@ -5,20 +5,12 @@
 #include <string>
 
 #include "model/csx600.hpp"
+#include "testbench/observation_options.hpp"
 #include "testbench/timeline.hpp"
 #include "testbench/transaction_log.hpp"
 #include "testbench/wave_files.hpp"
 
 namespace testbench {
-
-/// What to write down of a run on the chip while it goes on; none of it changes a cycle.
-struct ObservationOptions {
-  std::optional<WaveOptions> waves;
-  std::filesystem::path transactions;  ///< empty: none
-  std::filesystem::path timeline;
-
-  bool any() const { return waves || !transactions.empty() || !timeline.empty(); }
-};
 
 /// Throws InputError if a file cannot be written, or nothing is selected.
 void require_writable(const ObservationOptions& options, const model::ChipConfig& chip);

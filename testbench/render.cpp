@@ -9,6 +9,7 @@
 #include "testbench/host_time.hpp"
 #include "testbench/mono_image.hpp"
 #include "testbench/native_machine.hpp"
+#include "testbench/observation.hpp"
 #include "testbench/results.hpp"
 
 namespace testbench {

@@ -10,7 +10,7 @@
 #include "model/timing_style.hpp"
 #include "testbench/chip_statistics.hpp"
 #include "testbench/film.hpp"
-#include "testbench/observation.hpp"
+#include "testbench/observation_options.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {

@@ -9,15 +9,10 @@
 #include "model/wave_probe.hpp"
 #include "model/wave_signals.hpp"
 #include "model/wave_view.hpp"
+#include "testbench/observation_options.hpp"
 #include "testbench/output_stream.hpp"
 
 namespace testbench {
-
-/// Which part of a run to show as waves, and where.
-struct WaveOptions {
-  std::filesystem::path file;  ///< ends in ".vcd" or ".fst"
-  model::WaveConfig config;
-};
 
 /// Throws InputError when the trace or what stands beside it cannot be written, or the selection or a window
 /// is empty.

@@ -10,6 +10,7 @@
 #include "testbench/error.hpp"
 #include "testbench/image_file.hpp"
 #include "testbench/interrupt.hpp"
+#include "testbench/observation.hpp"
 #include "testbench/progress_bar.hpp"
 #include "testbench/render_report.hpp"
 #include "testbench/scene/scene_file.hpp"

@@ -6,7 +6,7 @@
 
 #include "model/chip_config.hpp"
 #include "testbench/commands/command_options.hpp"
-#include "testbench/observation.hpp"
+#include "testbench/observation_options.hpp"
 
 namespace testbench {
 

@@ -75,9 +75,12 @@ unsigned flags_of(WaveForm form) {
   return kRightJustified | kDecimal;
 }
 
-/// What the viewer shows in place of the name: the group says the rest.
+/// What the viewer shows in place of the name, whose scopes it leaves out: the group says the first, a number
+/// says which thread, bank or PE.
 std::string short_name(const WaveInstance& signal) {
-  return signal.path.substr(signal.path.find('.') + 1);
+  std::string name = signal.path.substr(signal.path.find('.') + 1);
+  std::replace(name.begin(), name.end(), '.', ' ');
+  return name;
 }
 
 std::string name_in_view(const WaveInstance& signal) {

@@ -60,8 +60,11 @@ WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
   } catch (const model::WaveError& error) {
     throw InputError(error.what());
   }
-  chip.clear_connect.set_observer(&*probe_);
-  if (chip.mono_ddr) chip.mono_ddr->set_observer(&*probe_, probe_->shows_ddr_commands());
+  using model::WaveSignal;
+  if (probe_->shows(WaveSignal::clear_connect_to_ddr) || probe_->shows(WaveSignal::clear_connect_from_ddr))
+    chip.clear_connect.set_observer(&*probe_);
+  const bool shows_ddr = probe_->shows(WaveSignal::ddr_bus) || probe_->shows_ddr_commands();
+  if (chip.mono_ddr && shows_ddr) chip.mono_ddr->set_observer(&*probe_, probe_->shows_ddr_commands());
 }
 
 void WaveFiles::finish() {

@@ -49,6 +49,10 @@ class WaveStatistics : public test_support::SystemCFixture, public testing::With
     EXPECT_EQ(result.observation_failures, "");
     return *result.chip;
   }
+  static void new_context() {
+    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
+    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+  }
   VcdReader vcd() const { return VcdReader::of_file(path("run.vcd")); }
 
   std::uint64_t cycle_at(std::uint64_t picoseconds) const {
@@ -244,10 +248,22 @@ TEST_P(WaveStatistics, TimelineIsWhatItsFormatAsksForAndAddsUp) {
   EXPECT_EQ(cycles[5], chip.host_link.busy_cycles);
 }
 
+TEST_P(WaveStatistics, SameRunLeavesTheSameBytes) {
+  const auto all = [&] {
+    new_context();
+    run();
+    std::vector<std::vector<std::string>> files;
+    for (const char* name : {"run.vcd", "run.gtkw", "run.jsonl", "run.json"}) files.push_back(lines(name));
+    return files;
+  };
+  const auto first = all();
+  EXPECT_EQ(all(), first);
+  for (const auto& file : first) EXPECT_GT(file.size(), 50u);
+}
+
 TEST_P(WaveStatistics, ViewNamesOnlyWhatIsDumped) {
   for (const auto level : {model::WaveLevel::overview, model::WaveLevel::units, model::WaveLevel::detail}) {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     options_.observation.waves->config.selection.level = level;
     run();
     const VcdReader vcd = this->vcd();

@@ -9,7 +9,7 @@ mkdir -p out
 
 echo "A short run with waves: out/cornell_box.vcd, open it with: gtkwave --save out/cornell_box.gtkw"
 ./build/release/csx600 render scenes/cornell_box --chip paper --size 64x64 --samples 1 \
-  --vcd out/cornell_box.vcd --vcd-cycles 1700000:6000000 > /dev/null
+  --waves out/cornell_box.vcd --waves-window 1700000:6000000 > /dev/null
 
 echo "The Cornell box on the paper's chip: out/cornell_box.exr, .png and, with the statistics, .json"
 ./build/release/csx600 render scenes/cornell_box --chip paper --samples 16 \

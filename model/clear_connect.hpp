@@ -34,6 +34,7 @@ class ClearConnect : public sc_core::sc_module {
   const ClearConnectStatistics& statistics(Initiator initiator) const {
     return timing_.statistics(initiator);
   }
+  void set_observer(PortObserver* observer) { timing_.set_observer(observer); }
 
  private:
   struct Load {

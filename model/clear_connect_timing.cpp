@@ -41,6 +41,7 @@ ClearConnectTiming::Passage ClearConnectTiming::send(Initiator initiator, Cycles
   link_free = link_start + link_cycles;
   const Cycles port_start = wait_for_port(initiator, forward_port_free_, link_start + latency_cycles_);
   forward_port_free_ = port_start + port_cycles;
+  if (observer_ != nullptr) observer_->passed(initiator, true, port_start, forward_port_free_);
   return {port_start, std::max(forward_port_free_, link_free + latency_cycles_), link_free};
 }
 
@@ -50,6 +51,7 @@ Cycles ClearConnectTiming::backward(Initiator initiator, std::uint64_t bytes, st
   statistics_[std::size_t(initiator)].bytes += bytes;
   const Cycles port_start = wait_for_port(initiator, backward_port_free_, first);
   backward_port_free_ = port_start + port_cycles(bytes);
+  if (observer_ != nullptr) observer_->passed(initiator, false, port_start, backward_port_free_);
   Cycles& link_free = backward_link_free_[std::size_t(initiator)];
   link_free = std::max(port_start, link_free) + cycles_at_width(bytes, link_bytes_per_cycle_);
   return std::max({link_free, backward_port_free_, last}) + latency_cycles_;

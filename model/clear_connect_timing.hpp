@@ -6,6 +6,7 @@
 #include "model/chip_config.hpp"
 #include "model/cycles.hpp"
 #include "model/divisor.hpp"
+#include "model/memory_observer.hpp"
 
 namespace model {
 
@@ -55,6 +56,7 @@ class ClearConnectTiming {
   const ClearConnectStatistics& statistics(Initiator initiator) const {
     return statistics_[std::size_t(initiator)];
   }
+  void set_observer(PortObserver* observer) { observer_ = observer; }
 
  private:
   Passage send(Initiator initiator, Cycles link_cycles, Cycles port_cycles, Cycles now);
@@ -70,6 +72,7 @@ class ClearConnectTiming {
   Cycles forward_port_free_ = 0;
   Cycles backward_port_free_ = 0;
   std::array<ClearConnectStatistics, kInitiators> statistics_;
+  PortObserver* observer_ = nullptr;
 };
 
 }  // namespace model

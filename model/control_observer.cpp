@@ -12,4 +12,9 @@ const char* cycle_cause_name(CycleCause cause) {
   return kNames.at(std::size_t(cause));
 }
 
+const char* thread_state_name(ThreadState state) {
+  static constexpr std::array<const char*, kThreadStates> kNames = {"none", "ready", "running", "waiting"};
+  return kNames.at(std::size_t(state));
+}
+
 }  // namespace model

@@ -2,6 +2,9 @@
 
 #include <cstdint>
 
+#include "firmware/cn/instruction.hpp"
+#include "firmware/cn/label.hpp"
+#include "firmware/cn/lane_mask.hpp"
 #include "model/cycles.hpp"
 
 namespace model {
@@ -25,6 +28,19 @@ inline constexpr int kCycleCauses = static_cast<int>(CycleCause::thread_switch) 
 
 const char* cycle_cause_name(CycleCause cause);
 
+/// What a hardware thread does.
+enum class ThreadState : std::uint8_t { none, ready, running, waiting };
+inline constexpr int kThreadStates = static_cast<int>(ThreadState::waiting) + 1;
+
+const char* thread_state_name(ThreadState state);
+
+/// A kernel beyond its name and time; what it points at is valid during the call.
+struct KernelDetails {
+  const cn::LaneMask* lanes;    ///< PEs that it was started for; null: all
+  const cn::IssueTree* issued;  ///< its instructions
+  cn::Label label;
+};
+
 /// Told how the control unit spends its time, span by span, in order and without gaps, ahead of SystemC time.
 class ControlObserver {
  public:
@@ -33,6 +49,7 @@ class ControlObserver {
   /// What the control unit does from `start` on, told before time may pass and its end is known. `spent` or
   /// `ran_kernel` with the same start follows, unless it takes no time.
   virtual void began(CycleCause /*cause*/, Cycles /*start*/, int /*semaphore*/) {}
+  virtual void kernel_details(const KernelDetails& /*details*/) {}  ///< right before began_kernel
   virtual void began_kernel(const char* /*name*/, Cycles /*start*/, int /*enabled_pes*/) {}
 
   /// [start, finish) went to `cause`; empty spans are not reported. `semaphore` is the one waited on or -1.
@@ -40,6 +57,12 @@ class ControlObserver {
 
   /// A kernel runs in [start, finish), stolen cycles included. `enabled_pes` are those it was started for.
   virtual void ran_kernel(const char* name, Cycles start, Cycles finish, int enabled_pes) = 0;
+
+  /// A hardware thread is in `state` from `at` on.
+  virtual void thread_changed(int /*thread*/, ThreadState /*state*/, Cycles /*at*/) {}
+
+  /// A block of the firmware's bins holds work in `slots` slots from `at` on (cn::Machine::report_fill).
+  virtual void filled(int /*block*/, int /*slots*/, Cycles /*at*/) {}
 };
 
 }  // namespace model

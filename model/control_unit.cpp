@@ -54,6 +54,7 @@ void ControlUnit::run() {
   now_ = clock_.cycle_at(sc_core::sc_time_stamp());
   start_cycle_ = now_;
   firmware_started_ = true;
+  report_thread(threads_.running(), ThreadState::running);
   run_thread([this] {
     if (firmware_) firmware_(*this);
   });
@@ -89,6 +90,14 @@ void ControlUnit::spend(CycleCause cause, Cycles cycles, int semaphore) {
 
 void ControlUnit::report_begin(CycleCause cause, int semaphore) {
   if (observer_ != nullptr) observer_->began(cause, now_, semaphore);
+}
+
+void ControlUnit::report_thread(int thread, ThreadState state) {
+  if (observer_ != nullptr) observer_->thread_changed(thread, state, now_);
+}
+
+void ControlUnit::report_fill(int block, const cn::LaneMask& slots) {
+  if (observer_ != nullptr) observer_->filled(block, slots.count(), now_);
 }
 
 void ControlUnit::wait_until(Cycles cycle) {
@@ -158,6 +167,7 @@ void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
   const std::uint64_t words_before = pio->words_moved_before(start);
   if (observer_ != nullptr) {
     report_begin(CycleCause::poly);
+    observer_->kernel_details({kernel_lanes(), &issued, label()});
     observer_->began_kernel(kernel, start, static_cast<int>(issued.root().enabled_lanes));
   }
   settle_pio(start + cost.cycles);
@@ -226,12 +236,14 @@ void ControlUnit::sem_wait(cn::Semaphore semaphore) {
 
 void ControlUnit::wait_alone(cn::Semaphore semaphore) {
   wait_record_.waits(Waiter::control_unit, semaphore, now_);
+  report_thread(threads_.running(), ThreadState::waiting);
   if (shared_with_host_[std::size_t(semaphore.index)]) {
     wait_for_host(semaphore);
   } else {
     wait_for_signal(semaphore);
   }
   wait_record_.goes_on(Waiter::control_unit, now_);
+  report_thread(threads_.running(), ThreadState::running);
 }
 
 CycleCause ControlUnit::cause_of_wait(cn::Semaphore semaphore) const {

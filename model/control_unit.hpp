@@ -102,6 +102,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void timed(bool on) override;
   void start_thread(int priority, const std::string& name, std::function<void()> body) override;
 
+  void report_fill(int block, const cn::LaneMask& slots) override;
+
   void signal_at(int index, Cycles at) override;
 
  protected:
@@ -125,6 +127,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void settle_pio_beside_host(Cycles cycle);
   bool serve_next_request();
   void report_begin(CycleCause cause, int semaphore = -1);
+  void report_thread(int thread, ThreadState state);
   void synchronise();
   void synchronise_for_observer();
   void forget_mono_pointer(sc_dt::uint64 start, sc_dt::uint64 end);

@@ -16,6 +16,7 @@ void ControlUnit::start_thread(int priority, const std::string& name, std::funct
   const int slot = threads_.start(priority, name);
   if (!processes_[0]) processes_[0].reset(new ThreadProcess{{}, true, {}});
   processes_[std::size_t(slot)].reset(new ThreadProcess{std::move(body), false, {}});
+  report_thread(slot, ThreadState::ready);
   if (timed_) let_higher_priority_run();
 }
 
@@ -23,6 +24,7 @@ void ControlUnit::run_thread(const std::function<void()>& body) {
   try {
     body();
     threads_.end();
+    report_thread(threads_.running(), ThreadState::none);
     if (threads_.alive() > 0) return wake(choose_thread());
     synchronise();
   } catch (const sc_core::sc_unwind_exception&) {
@@ -66,6 +68,7 @@ void ControlUnit::dispatch(int thread) {
     spend(CycleCause::thread_switch, Cycles(config_.control.thread_switch_cycles));
   }
   threads_.run(thread);
+  report_thread(thread, ThreadState::running);
 }
 
 void ControlUnit::let_higher_priority_run() {
@@ -75,6 +78,7 @@ void ControlUnit::let_higher_priority_run() {
   const std::optional<int> thread = threads_.takes_over(semaphore_file_, now_);
   if (!thread) return;
   const int self = threads_.running();
+  report_thread(self, ThreadState::ready);
   dispatch(*thread);
   switch_to(*thread, self);
 }
@@ -86,6 +90,7 @@ void ControlUnit::wait_among_threads(cn::Semaphore semaphore) {
   }
   const int self = threads_.running();
   threads_.wait(semaphore.index);
+  report_thread(self, ThreadState::waiting);
   const int next = choose_thread();
   if (next != self) switch_to(next, self);
 }

@@ -34,7 +34,8 @@ class DdrTiming::Burst {
         arrival_(arrival),
         turn_round_(ddr.turn_round(direction)),
         bus_free_(ddr.bus_free_),
-        next_refresh_(ddr.next_refresh_) {}
+        next_refresh_(ddr.next_refresh_),
+        is_observed_(ddr.command_observer_ != nullptr) {}
 
   /// Returns the first byte's cycle on the data bus.
   Cycles access(cn::MonoAddress address, std::uint64_t bytes) {
@@ -57,6 +58,8 @@ class DdrTiming::Burst {
     statistics.page_misses += misses_;
     statistics.busy_cycles += busy_cycles_;
     ddr_.bus_free_ = bus_free_;
+    if (ddr_.observer_ != nullptr)
+      ddr_.observer_->accessed(ddr_.bus_direction_ == BusDirection::write, start, bus_free_);
     return {start, bus_free_ + ddr_.ecc_cycles_, misses_ == 0};
   }
 
@@ -71,6 +74,7 @@ class DdrTiming::Burst {
       const Cycles start = bus_free_;
       bus_free_ += transfer_cycles;
       bank_[banks_.remainder(page)].ready = bus_free_ - page_hit_cycles_;
+      if (is_observed_) report(page, true, start - page_hit_cycles_, start);
       return start;
     }
     page_ = page;
@@ -86,6 +90,7 @@ class DdrTiming::Burst {
     bank.open_page = page;
     bank.ready = bus_free_ - page_hit_cycles_;
     misses_ += !hit;
+    if (is_observed_) report(page, hit, command, start);
     return start;
   }
 
@@ -96,6 +101,9 @@ class DdrTiming::Burst {
     return ddr.next_refresh_;
   }
   void refresh(Cycles now) { next_refresh_ = refresh_until(ddr_, now, bus_free_); }
+  void report(std::uint64_t page, bool hit, Cycles command, Cycles start) {
+    ddr_.report_commands(banks_.remainder(page), banks_.quotient(page), hit, command, start, bus_free_);
+  }
 
   // Copies of what does not change: a store to a bank could change the original, for all the compiler knows.
   DdrTiming& ddr_;
@@ -109,12 +117,23 @@ class DdrTiming::Burst {
   Cycles turn_round_;
   Cycles bus_free_;
   Cycles next_refresh_;
+  const bool is_observed_;
   std::uint64_t page_ = kNoPage;  ///< that the access before was in
   std::uint64_t bytes_ = 0;
   std::uint64_t pages_ = 0;
   std::uint64_t misses_ = 0;
   Cycles busy_cycles_ = 0;
 };
+
+void DdrTiming::report_commands(std::size_t bank, std::uint64_t row, bool hit, Cycles command, Cycles start,
+                                Cycles finish) {
+  const bool write = bus_direction_ == BusDirection::write;
+  const int number = static_cast<int>(bank);
+  if (!hit) command_observer_->commanded(number, DdrCommand::activate, row, command);
+  command_observer_->commanded(number, write ? DdrCommand::write : DdrCommand::read, row,
+                               start - page_hit_cycles_);
+  command_observer_->moved_data(write, start, finish);
+}
 
 DdrTiming::Access DdrTiming::access(cn::MonoAddress address, std::uint64_t bytes, bool write,
                                     Cycles arrival) {
@@ -147,6 +166,8 @@ void DdrTiming::refresh_until(Cycles now) {
   const Cycles latest = next_refresh_ + (due - 1) * refresh_interval_cycles_;
   const Cycles over = std::max(latest, bus_free_) + refresh_cycles_;
   for (Bank& bank : bank_) bank = {kNoPage, over};
+  if (command_observer_ != nullptr)
+    command_observer_->commanded(-1, DdrCommand::refresh, 0, over - refresh_cycles_);
   statistics_.refreshes += due;
   next_refresh_ = latest + refresh_interval_cycles_;
 }

@@ -7,6 +7,7 @@
 #include "model/chip_config.hpp"
 #include "model/cycles.hpp"
 #include "model/divisor.hpp"
+#include "model/memory_observer.hpp"
 #include "model/mono_pieces.hpp"
 
 namespace model {
@@ -57,6 +58,10 @@ class DdrTiming {
   Access access(const MonoPieces::Runs& runs, bool write, Cycles arrival);
 
   const DdrStatistics& statistics() const { return statistics_; }
+  void set_observer(DdrObserver* observer, bool with_commands) {
+    observer_ = observer;
+    command_observer_ = with_commands ? observer : nullptr;
+  }
 
  private:
   static constexpr std::uint64_t kNoPage = ~std::uint64_t{0};
@@ -71,6 +76,8 @@ class DdrTiming {
   Cycles turn_round(BusDirection direction);
   /// Books the refreshes due by `now`, at least one.
   void refresh_until(Cycles now);
+  void report_commands(std::size_t bank, std::uint64_t row, bool hit, Cycles command, Cycles start,
+                       Cycles finish);
 
   Divisor page_bytes_;
   Divisor banks_;
@@ -86,6 +93,8 @@ class DdrTiming {
   Cycles bus_free_ = 0;
   BusDirection bus_direction_ = BusDirection::unused;
   Cycles next_refresh_;
+  DdrObserver* observer_ = nullptr;
+  DdrObserver* command_observer_ = nullptr;
   DdrStatistics statistics_;
 };
 

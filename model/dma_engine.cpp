@@ -72,6 +72,8 @@ Cycles DmaEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
   request.id = next_id_++;
   request.poly = transfer.poly;
   request.done = transfer.done;
+  request.label = transfer.label;
+  if (observer_ != nullptr) request.enabled = transfer.enabled;
   request.addresses.pieces.describe(transfer, poly_.num_pes(), rules_);
   cn::Transfer of_copied_addresses = transfer;  // a scatter may overwrite a table of addresses
   of_copied_addresses.mono = request.addresses.pieces.places();
@@ -143,7 +145,10 @@ void DmaEngine::note_start(Request& request, const PioQueue::Start& next) {
   request.event = {
       request.id, pieces.direction(), pieces.poly_bytes(), pieces.pes(), next.entry.enqueued, next.cycle,
       0,          request.done.index, queue_.waiting()};
-  if (observer_ != nullptr) observer_->started(request.event);
+  if (observer_ == nullptr) return;
+  request.event.label = request.label;
+  request.event.enabled = &request.enabled;
+  observer_->started(request.event);
 }
 
 void DmaEngine::end_request(Request& request, Cycles finish) {

@@ -68,6 +68,8 @@ class DmaEngine : public sc_core::sc_module, public PioPort {
     cn::Semaphore done;
     PeAddresses addresses;
     PioEvent event;
+    cn::Label label;
+    cn::LaneMask enabled;  ///< kept for an observer only
   };
 
   void start_due(Cycles now);

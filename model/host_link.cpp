@@ -35,6 +35,8 @@ Cycles HostLink::download(cn::MonoAddress from, void* to, std::uint64_t bytes, C
 Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, unsigned char* data,
                           std::uint64_t bytes, Cycles now) {
   const Cycles start = std::max(now, free_);
+  const bool upload = command == tlm::TLM_WRITE_COMMAND;
+  if (observer_ != nullptr) observer_->began_transfer(upload, bytes, start);
   Cycles end = start;
   for (std::uint64_t done = 0; done < bytes;) {
     const std::uint64_t dma_bytes = std::min(bytes - done, kMaxDmaBytes);
@@ -52,6 +54,7 @@ Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, uns
     unbooked_.push_back(packets);
   }
   statistics_.busy_cycles += end - start;
+  if (observer_ != nullptr) observer_->ended_transfer(upload, bytes, start, end);
   free_at_ = clock_.time_at(end);
   return free_ = end;
 }

@@ -10,6 +10,7 @@
 #include "model/chip_config.hpp"
 #include "model/host_packets.hpp"
 #include "model/host_traffic.hpp"
+#include "model/memory_observer.hpp"
 #include "model/payload_pool.hpp"
 
 namespace model {
@@ -47,6 +48,7 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   bool in_progress() const override;
 
   const HostLinkStatistics& statistics() const { return statistics_; }
+  void set_observer(HostObserver* observer) { observer_ = observer; }
 
  private:
   Cycles transfer(tlm::tlm_command command, cn::MonoAddress address, unsigned char* data, std::uint64_t bytes,
@@ -77,6 +79,7 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   bool send_asked_ = false;
   sc_core::sc_event answered_;
 
+  HostObserver* observer_ = nullptr;
   HostLinkStatistics statistics_;
 };
 

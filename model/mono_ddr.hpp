@@ -32,6 +32,9 @@ class MonoDdr : public sc_core::sc_module {
           Agenda* agenda = nullptr);
 
   const DdrStatistics& statistics() const { return timing_.statistics(); }
+  void set_observer(DdrObserver* observer, bool with_commands) {
+    timing_.set_observer(observer, with_commands);
+  }
   LazyMemory& memory() { return memory_; }
 
  private:

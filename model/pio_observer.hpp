@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "firmware/cn/lane_mask.hpp"
 #include "firmware/cn/transfer.hpp"
 #include "model/cycles.hpp"
 
@@ -17,7 +18,9 @@ struct PioEvent {
   Cycles started = 0;
   Cycles finished = 0;
   int semaphore = -1;
-  int queue_depth = 0;  ///< requests that wait when this one has started
+  int queue_depth = 0;                    ///< requests that wait when this one has started
+  cn::Label label{};                      ///< what it belongs to
+  const cn::LaneMask* enabled = nullptr;  ///< PEs that take part; valid during the call
 };
 
 /// Told about requests when their times are decided, which is ahead of SystemC time and in the order of

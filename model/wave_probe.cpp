@@ -1,246 +1,365 @@
 #include "model/wave_probe.hpp"
 
-#include <sysc/tracing/sc_tracing_ids.h>
 #include <algorithm>
 
-#include "model/vcd_file.hpp"
+#include "model/clear_connect_timing.hpp"
 
 namespace model {
 namespace {
 
-/// SystemC announces the time unit of a file, and warns of two samples at one time even if the second shows
-/// no change. Nobody needs to read either.
-class QuietTracing {
- public:
-  QuietTracing()
-      : time_unit_(set_time_unit(sc_core::SC_DO_NOTHING)),
-        same_time_(set_same_time(sc_core::SC_DO_NOTHING)) {}
-  QuietTracing(const QuietTracing&) = delete;
-  QuietTracing& operator=(const QuietTracing&) = delete;
-  ~QuietTracing() {
-    set_time_unit(time_unit_);
-    set_same_time(same_time_);
-  }
+/// Approximately timed, read data are reported when the memory answers, up to a burst after the first of
+/// them.
+constexpr Cycles kLatestReport = 2000;
 
- private:
-  using Actions = sc_core::sc_actions;
-  static Actions set_time_unit(Actions actions) {
-    return sc_core::sc_report_handler::set_actions(sc_core::SC_ID_TRACING_TIMESCALE_UNIT_, sc_core::SC_INFO,
-                                                   actions);
-  }
-  static Actions set_same_time(Actions actions) {
-    return sc_core::sc_report_handler::set_actions(sc_core::SC_ID_TRACING_REVERSED_TIME_, sc_core::SC_WARNING,
-                                                   actions);
-  }
-
-  Actions time_unit_;
-  Actions same_time_;
-};
-
-/// SystemC samples when time goes on, so it never samples the last time of a run. This does what it would.
-void sample(sc_core::sc_trace_file* file) {
-  struct Sampler : sc_core::sc_trace_file {
-    using sc_trace_file::cycle;
-  };
-  const QuietTracing quiet;
-  (file->*&Sampler::cycle)(false);
+std::string number(std::uint64_t value) {
+  return std::to_string(value);
 }
 
-void check(const WaveConfig& config) {
-  const std::string file = config.vcd_file.string();
-  if (config.vcd_file.extension() != ".vcd")
-    throw WaveError("waves: found the file name '" + file + "'; allowed: a name that ends in .vcd");
-  if (config.first_cycle >= config.last_cycle)
-    throw WaveError(file + ": found a window from cycle " + std::to_string(config.first_cycle) +
-                    " to before cycle " + std::to_string(config.last_cycle) +
-                    "; allowed: one that ends after it begins");
-  const std::string problem = create_vcd_file(config.vcd_file);
-  if (!problem.empty())
-    throw WaveError(file + ": found that it cannot be created (" + problem +
-                    "); allowed: a file in an existing directory that can be written to");
+std::string text_of_windows(const WaveConfig& config) {
+  std::string text;
+  const auto add = [&](const std::string& window) { text += (text.empty() ? "" : ", ") + window; };
+  for (const CycleWindow& window : config.windows)
+    add("from cycle " + number(window.first) +
+        (window.last == CycleWindow{}.last ? " on" : " to before cycle " + number(window.last)));
+  for (const BlockWindow& window : config.blocks) add("from block " + number(window.first) + " on");
+  return text;
 }
 
-bool is_count(WaveSignal signal) {
-  return signal >= WaveSignal::ddr_page_hits;
+std::uint64_t initial_value(WaveSignal signal) {
+  switch (signal) {
+    case WaveSignal::control_semaphore:
+      return kNoSemaphore;
+    case WaveSignal::pio_load_request:
+    case WaveSignal::pio_save_request:
+      return kNoRequest;
+    case WaveSignal::bins_load_block:
+    case WaveSignal::bins_compute_block:
+    case WaveSignal::bins_save_block:
+      return kNoBlock;
+    default:
+      return 0;
+  }
+}
+
+WaveRecorder::Rule rule_of(WaveSignal signal) {
+  switch (signal) {
+    // Taken when a request is booked and shown when it is over, and two engines overtake each other.
+    case WaveSignal::clear_connect_pio_bytes:
+    case WaveSignal::ddr_page_hits:
+    case WaveSignal::ddr_page_misses:
+    case WaveSignal::ddr_bytes_read:
+    case WaveSignal::ddr_bytes_written:
+      return WaveRecorder::Rule::maximum;
+    case WaveSignal::pe_transfer:
+      return WaveRecorder::Rule::set_or_clear;
+    default:
+      return WaveRecorder::Rule::assign;
+  }
+}
+
+bool is_load(const PioEvent& event) {
+  return event.direction == cn::Direction::mono_to_poly;
+}
+
+/// For Rule::set_or_clear: bit 0 of a PE's part is loading, bit 1 saving.
+std::uint64_t part(const PioEvent& event, bool begins) {
+  return (is_load(event) ? 0u : 2u) + (begins ? 1u : 0u);
+}
+
+WaveSignal next(WaveSignal signal) {
+  return static_cast<WaveSignal>(int(signal) + 1);
+}
+
+/// Banks have a stream each, which costs time at every cycle.
+std::size_t banks_shown(const std::vector<WaveInstance>& signals, const ChipConfig& chip) {
+  const bool any = std::any_of(signals.begin(), signals.end(), [](const WaveInstance& signal) {
+    return signal.info->count == WaveCount::bank;
+  });
+  return any ? std::size_t(chip.ddr.banks) : 0;
 }
 
 }  // namespace
 
-WaveProbe::WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& config, const ClockDomain& clock,
-                     MemorySampler memory)
-    : sc_module(name), config_(config), clock_(clock), memory_(std::move(memory)) {
-  check(config_);
-  value_of(WaveSignal::control_semaphore) = kNoSemaphore;
-  value_of(WaveSignal::pio_load_request) = kNoRequest;
-  value_of(WaveSignal::pio_save_request) = kNoRequest;
+void check_waves(const WaveConfig& config, const ChipConfig& chip) {
+  for (const CycleWindow& window : config.windows)
+    if (window.first >= window.last)
+      throw WaveError("waves: found a window from cycle " + number(window.first) + " to before cycle " +
+                      number(window.last) + "; allowed: one that ends after it begins");
+  for (const BlockWindow& window : config.blocks)
+    if (window.first == 0 || window.count == 0)
+      throw WaveError("waves: found a window of " + number(window.count) + " blocks from block " +
+                      number(window.first) + " on; allowed: at least one, counted from 1");
+  select_waves(chip, config.selection);
+}
+
+std::uint64_t WaveProbe::Numbering::operator()(const char* name) {
+  const auto found = std::find(literals.begin(), literals.end(), name);
+  const auto index = std::uint64_t(found - literals.begin());
+  if (found == literals.end()) {
+    literals.push_back(name);
+    texts.emplace_back(name);
+  }
+  return index + 1;
+}
+
+WaveProbe::WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& config, const ChipConfig& chip,
+                     TextSink sink, MemorySampler memory)
+    : sc_module(name),
+      chip_(chip),
+      clock_(chip.chip.clock_hz),
+      memory_(std::move(memory)),
+      signals_((check_waves(config, chip), select_waves(chip, config.selection))),
+      recorder_(std::move(sink), recorded_signals(signals_), clock_,
+                std::size_t(first_bank_stream) + banks_shown(signals_, chip)),
+      windows_text_(text_of_windows(config)),
+      blocks_(config.blocks) {
+  place_signals();
+  shows_counts_ = shows(WaveSignal::ddr_page_hits) || shows(WaveSignal::ddr_page_misses) ||
+                  shows(WaveSignal::ddr_bytes_read) || shows(WaveSignal::ddr_bytes_written) ||
+                  shows(WaveSignal::clear_connect_pio_bytes);
+  shows_pes_ = shows(WaveSignal::pe_enabled) || shows(WaveSignal::pe_transfer);
+  open_windows(config);
   SC_HAS_PROCESS(WaveProbe);
   SC_METHOD(advance);
   sensitive << wake_;
+  dont_initialize();
 }
 
-WaveProbe::~WaveProbe() {
-  if (window_ == Window::open) close_at_end_of_run();
+std::vector<WaveRecorder::Signal> WaveProbe::recorded_signals(const std::vector<WaveInstance>& signals) {
+  std::vector<WaveRecorder::Signal> recorded;
+  for (const WaveInstance& signal : signals)
+    recorded.push_back({{wave_name_in_file(signal), signal.info->width},
+                        initial_value(signal.info->id),
+                        rule_of(signal.info->id)});
+  return recorded;
+}
+
+void WaveProbe::place_signals() {
+  places_.resize(std::size_t(kWaveSignals));
+  for (const WaveSignalInfo& info : wave_signal_table())
+    places_[std::size_t(info.id)].assign(std::size_t(wave_count(chip_, info.count)), kNotShown);
+  for (std::size_t i = 0; i < signals_.size(); ++i)
+    places_[std::size_t(signals_[i].info->id)][std::size_t(signals_[i].index)] = i;
+}
+
+bool WaveProbe::shows(WaveSignal signal) const {
+  const std::vector<std::size_t>& places = places_[std::size_t(signal)];
+  return std::any_of(places.begin(), places.end(), [](std::size_t place) { return place != kNotShown; });
+}
+
+void WaveProbe::open_windows(const WaveConfig& config) {
+  for (const CycleWindow& window : config.windows) recorder_.add_window(window);
+  if (config.windows.empty() && config.blocks.empty()) recorder_.add_window({});
+  recorder_.expect_windows(!config.blocks.empty());
 }
 
 void WaveProbe::began(CycleCause cause, Cycles start, int semaphore) {
-  change(start, WaveSignal::control_state, std::uint64_t(cause) + 1);
-  change(start, WaveSignal::control_semaphore, semaphore < 0 ? kNoSemaphore : std::uint64_t(semaphore));
+  change(control_stream, start, WaveSignal::control_state, std::uint64_t(cause) + 1);
+  change(control_stream, start, WaveSignal::control_semaphore,
+         semaphore < 0 ? kNoSemaphore : std::uint64_t(semaphore));
   span_.emplace(start, cause);
 }
 
 void WaveProbe::spent(CycleCause cause, Cycles start, Cycles finish, int semaphore) {
   if (span_ != std::pair(start, cause)) began(cause, start, semaphore);
-  // The next span, if one follows at once, replaces these in the same cycle.
-  change(finish, WaveSignal::control_state, 0);
-  change(finish, WaveSignal::control_semaphore, kNoSemaphore);
+  control_finish_ = finish;  // the next span follows at once
   if (cause == CycleCause::data_cache) change_memory_counters(finish);
+  wake_for(finish);
+}
+
+/// Nothing follows the last span yet, or ever.
+void WaveProbe::end_control() {
+  change(control_stream, control_finish_, WaveSignal::control_state, 0);
+  change(control_stream, control_finish_, WaveSignal::control_semaphore, kNoSemaphore);
+  control_finish_ = std::numeric_limits<Cycles>::max();  // until there is another
+}
+
+void WaveProbe::kernel_details(const KernelDetails& details) {
+  details_ = details;
 }
 
 void WaveProbe::began_kernel(const char* name, Cycles start, int enabled_pes) {
-  change(start, WaveSignal::control_kernel, kernel_number(name));
-  change(start, WaveSignal::pe_array_busy, 1);
-  change(start, WaveSignal::pe_array_enabled_pes, std::uint64_t(enabled_pes));
+  const cn::Label& label = details_.label;
+  if (label.bin != computed_label_.bin || label.block != computed_label_.block) {
+    computed_label_ = label;
+    if (label.bin != nullptr) count_block(start);
+    change_label(control_stream, start, WaveSignal::bins_compute_bin, label);
+  }
+  change(control_stream, start, WaveSignal::control_kernel, kernels_(name));
+  change(control_stream, start, WaveSignal::pe_array_busy, 1);
+  change(control_stream, start, WaveSignal::pe_array_enabled_pes, std::uint64_t(enabled_pes));
+  if (details_.issued != nullptr && shows(WaveSignal::pe_array_instruction_class))
+    change(control_stream, start, WaveSignal::pe_array_instruction_class, main_class(*details_.issued));
+  change_lanes(control_stream, start, WaveSignal::pe_enabled, details_.lanes, 1);
   kernel_start_ = start;
 }
 
 void WaveProbe::ran_kernel(const char* name, Cycles start, Cycles finish, int enabled_pes) {
   if (kernel_start_ != start) began_kernel(name, start, enabled_pes);
-  change(finish, WaveSignal::control_kernel, 0);
-  change(finish, WaveSignal::pe_array_busy, 0);
-  change(finish, WaveSignal::pe_array_enabled_pes, 0);
+  change(control_stream, finish, WaveSignal::control_kernel, 0);
+  change(control_stream, finish, WaveSignal::pe_array_busy, 0);
+  change(control_stream, finish, WaveSignal::pe_array_enabled_pes, 0);
+  change(control_stream, finish, WaveSignal::pe_array_instruction_class, 0);
+  change_lanes(control_stream, finish, WaveSignal::pe_enabled, nullptr, 0);
+  details_.issued = nullptr;  // points at what was valid then
+  details_.lanes = nullptr;
+}
+
+std::uint64_t WaveProbe::main_class(const cn::IssueTree& issued) const {
+  cn::IssueCounts counts;
+  issued.for_each_node([&](const cn::IssueTree::Node& node) { counts += node.counts; });
+  std::size_t most = 0;
+  const auto cycles = [&](std::size_t i) { return double(counts.by_class[i]) * chip_.poly.cycles[i]; };
+  for (std::size_t i = 1; i < cn::kInstructionClasses; ++i)
+    if (cycles(i) > cycles(most)) most = i;
+  return most + 1;
+}
+
+void WaveProbe::count_block(Cycles start) {
+  ++blocks_begun_;
+  for (const BlockWindow& window : blocks_) {
+    if (blocks_begun_ == window.first) recorder_.open_at(start);
+    if (blocks_begun_ > window.first && blocks_begun_ - window.first == window.count)
+      recorder_.close_at(start);
+  }
+  recorder_.expect_windows(std::any_of(blocks_.begin(), blocks_.end(), [&](const BlockWindow& window) {
+    return blocks_begun_ < window.first || blocks_begun_ - window.first < window.count;
+  }));
+  if (recorder_.wants_more() && block_starts_.size() < kBlocksRemembered && recorder_.covers(start))
+    block_starts_.push_back(start);
+}
+
+void WaveProbe::thread_changed(int thread, ThreadState state, Cycles at) {
+  change(control_stream, at, WaveSignal::control_thread, std::uint64_t(state), thread);
+}
+
+void WaveProbe::filled(int block, int slots, Cycles at) {
+  if (fill_by_block_.size() <= std::size_t(block)) fill_by_block_.resize(std::size_t(block) + 1);
+  int& before = fill_by_block_[std::size_t(block)];
+  fill_ += std::uint64_t(slots - before);
+  before = slots;
+  change(control_stream, at, WaveSignal::bins_fill, fill_);
 }
 
 void WaveProbe::started(const PioEvent& event) {
-  const bool load = event.direction == cn::Direction::mono_to_poly;
-  change(event.started, load ? WaveSignal::pio_loading : WaveSignal::pio_saving, 1);
-  change(event.started, load ? WaveSignal::pio_load_request : WaveSignal::pio_save_request,
+  const bool load = is_load(event);
+  const Stream stream = load ? load_stream : save_stream;
+  const Cycles at = event.started;
+  change(stream, at, load ? WaveSignal::pio_loading : WaveSignal::pio_saving, 1);
+  change(stream, at, load ? WaveSignal::pio_load_request : WaveSignal::pio_save_request,
          event.id & kNoRequest);
-  change(event.started, load ? WaveSignal::pio_load_bytes : WaveSignal::pio_save_bytes, event.bytes);
-  change(event.started, WaveSignal::pio_queue_depth, std::uint64_t(event.queue_depth));
+  change(stream, at, load ? WaveSignal::pio_load_bytes : WaveSignal::pio_save_bytes, event.bytes);
+  change_label(stream, at, load ? WaveSignal::bins_load_bin : WaveSignal::bins_save_bin, event.label);
+  change(counts_stream, at, WaveSignal::pio_queue_depth, std::uint64_t(event.queue_depth));
+  change_lanes(stream, at, WaveSignal::pe_transfer, event.enabled, part(event, true));
+  wake_for(at);
 }
 
 void WaveProbe::finished(const PioEvent& event) {
-  const bool load = event.direction == cn::Direction::mono_to_poly;
-  change(event.finished, load ? WaveSignal::pio_loading : WaveSignal::pio_saving, 0);
-  change(event.finished, load ? WaveSignal::pio_load_request : WaveSignal::pio_save_request, kNoRequest);
-  change(event.finished, load ? WaveSignal::pio_load_bytes : WaveSignal::pio_save_bytes, 0);
+  const bool load = is_load(event);
+  const Stream stream = load ? load_stream : save_stream;
+  change(stream, event.finished, load ? WaveSignal::pio_loading : WaveSignal::pio_saving, 0);
+  change_lanes(stream, event.finished, WaveSignal::pe_transfer, event.enabled, part(event, false));
   change_memory_counters(event.finished);
+  wake_for(event.finished);
+}
+
+void WaveProbe::accessed(bool write, Cycles start, Cycles finish) {
+  change(bus_stream, start, WaveSignal::ddr_bus, write ? 2 : 1);
+  change(bus_stream, finish, WaveSignal::ddr_bus, 0);
+}
+
+void WaveProbe::moved_data(bool write, Cycles start, Cycles finish) {
+  change(data_stream, start, WaveSignal::ddr_data, write ? 2 : 1);
+  change(data_stream, finish, WaveSignal::ddr_data, 0);
+}
+
+void WaveProbe::commanded(int bank, DdrCommand command, std::uint64_t row, Cycles at) {
+  const int first = bank < 0 ? 0 : bank;
+  const int last = bank < 0 ? chip_.ddr.banks : bank + 1;
+  for (int i = first; i < last; ++i) {
+    const std::size_t stream = std::size_t(first_bank_stream) + std::size_t(i);
+    change(stream, at, WaveSignal::ddr_bank_command, std::uint64_t(command) + 1, i);
+    if (command == DdrCommand::activate) change(stream, at, WaveSignal::ddr_bank_row, row, i);
+  }
+}
+
+void WaveProbe::passed(Initiator initiator, bool to_ddr, Cycles start, Cycles finish) {
+  const Stream stream = to_ddr ? to_ddr_stream : from_ddr_stream;
+  const WaveSignal signal = to_ddr ? WaveSignal::clear_connect_to_ddr : WaveSignal::clear_connect_from_ddr;
+  change(stream, start, signal, std::uint64_t(initiator) + 1);
+  change(stream, finish, signal, 0);
+}
+
+void WaveProbe::began_transfer(bool upload, std::uint64_t, Cycles start) {
+  change(host_stream, start, WaveSignal::host_link_state, upload ? 1 : 2);
+  wake_for(start);
+}
+
+void WaveProbe::ended_transfer(bool, std::uint64_t, Cycles, Cycles finish) {
+  change(host_stream, finish, WaveSignal::host_link_state, 0);
+  wake_for(finish);
 }
 
 void WaveProbe::finish() {
-  const std::string file = config_.vcd_file.string();
-  if (window_ == Window::open) close_at_end_of_run();
-  if (window_end_ > window_start_) {
-    if (!std::filesystem::is_regular_file(config_.vcd_file)) return;  // a named pipe cannot be read back
-    // SystemC computes time stamps in floating point; they may be off by one beyond 2^52 ps.
-    const auto time = closing_time(config_.vcd_file);
-    const std::uint64_t end = window_end_.value();
-    if (time && *time + 1 >= end && *time <= end + 1) return;
-    throw WaveError(file + ": found that it is not complete; allowed: a disk with room for it");
-  }
-  throw WaveError(file + ": found nothing that ran in the window from cycle " +
-                  std::to_string(config_.first_cycle) + " to before cycle " +
-                  std::to_string(config_.last_cycle) +
-                  "; allowed: a window within the run, which ended at cycle " +
-                  std::to_string(clock_.cycle_at(sc_core::sc_time_stamp())));
+  const Cycles end = clock_.cycle_at(sc_core::sc_time_stamp());
+  if (control_finish_ <= end) end_control();
+  recorder_.finish(end);
+  if (recorder_.last_recorded() > recorder_.first_recorded()) return;
+  throw WaveError("waves: found nothing that ran in the windows (" + windows_text_ +
+                  "); allowed: windows within the run, which ended at cycle " + number(end) + " after " +
+                  number(blocks_begun_) + " blocks");
 }
 
 void WaveProbe::change_memory_counters(Cycles cycle) {
+  if (!shows_counts_) return;
   const MemoryCounters counters = memory_();
-  change(cycle, WaveSignal::ddr_page_hits, counters.page_hits);
-  change(cycle, WaveSignal::ddr_page_misses, counters.page_misses);
-  change(cycle, WaveSignal::ddr_bytes_read, counters.bytes_read);
-  change(cycle, WaveSignal::ddr_bytes_written, counters.bytes_written);
-  change(cycle, WaveSignal::clear_connect_pio_bytes, counters.pio_bytes);
+  change(counts_stream, cycle, WaveSignal::ddr_page_hits, counters.page_hits);
+  change(counts_stream, cycle, WaveSignal::ddr_page_misses, counters.page_misses);
+  change(counts_stream, cycle, WaveSignal::ddr_bytes_read, counters.bytes_read);
+  change(counts_stream, cycle, WaveSignal::ddr_bytes_written, counters.bytes_written);
+  change(counts_stream, cycle, WaveSignal::clear_connect_pio_bytes, counters.pio_bytes);
 }
 
-std::uint64_t WaveProbe::kernel_number(const char* name) {
-  const auto found = std::find(kernel_names_.begin(), kernel_names_.end(), name);
-  const auto index = std::uint64_t(found - kernel_names_.begin());
-  if (found == kernel_names_.end()) kernel_names_.emplace_back(name);
-  return index + 1;
+void WaveProbe::change_label(std::size_t stream, Cycles cycle, WaveSignal bin, const cn::Label& label) {
+  change(stream, cycle, bin, label.bin == nullptr ? 0 : bins_(label.bin));
+  change(stream, cycle, next(bin), label.block < 0 ? kNoBlock : std::uint64_t(label.block));
 }
 
-/// Each signal is reported in the order of its times; signals are not in order among each other.
-void WaveProbe::change(Cycles cycle, WaveSignal signal, std::uint64_t value) {
-  if (window_ == Window::over) return;
-  if (cycle >= config_.last_cycle) {
-    beyond_window_ = true;
-  } else if (window_ == Window::before && cycle <= config_.first_cycle) {
-    apply(signal, value);  // part of the initial values: nobody sees it earlier
-    return;
-  } else {
-    changes_.push({cycle, reported_++, signal, value});
-  }
-  if (window_ == Window::open && clock_.time_at(cycle) < sc_core::sc_time_stamp()) ++late_changes_;
-  wake_for_next();
+void WaveProbe::change_lanes(std::size_t stream, Cycles cycle, WaveSignal signal, const cn::LaneMask* lanes,
+                             std::uint64_t value) {
+  if (!shows_pes_) return;
+  for (int pe = 0; pe < chip_.chip.pes; ++pe)
+    if (lanes == nullptr || (*lanes)[pe]) change(stream, cycle, signal, value, pe);
 }
 
-void WaveProbe::apply_until(Cycles cycle) {
-  for (; !changes_.empty() && changes_.top().cycle <= cycle; changes_.pop())
-    apply(changes_.top().signal, changes_.top().value);
+void WaveProbe::change(std::size_t stream, Cycles cycle, WaveSignal signal, std::uint64_t value, int index) {
+  const std::size_t place = places_[std::size_t(signal)][std::size_t(index)];
+  if (place == kNotShown || !recorder_.wants_more()) return;
+  recorder_.change(stream, cycle, place, value);
 }
 
-void WaveProbe::apply(WaveSignal signal, std::uint64_t value) {
-  // Counts are taken when a request is booked and shown when it is over, and two engines overtake each other.
-  value_of(signal) = is_count(signal) ? std::max<std::uint64_t>(value_of(signal), value) : value;
-  value_of(WaveSignal::pio_state) = value_of(WaveSignal::pio_loading) + 2 * value_of(WaveSignal::pio_saving);
-}
-
-/// The only process. SystemC samples the values after it, before time goes on.
+/// The only process. What is reported from now on is not earlier than now, less what units report late.
 void WaveProbe::advance() {
+  wake_pending_ = false;
   const Cycles now = clock_.cycle_at(sc_core::sc_time_stamp());
-  if (now >= config_.last_cycle) {
-    if (window_ == Window::open) close();
-    window_ = Window::over;
-    return;
-  }
-  if (window_ == Window::before && now >= config_.first_cycle) open();
-  apply_until(now);
-  wake_for_next();
+  const Cycles end = now - std::min(now, kLatestReport);
+  const bool in_a_span = span_ && span_->first >= control_finish_;
+  if (control_finish_ < end && !in_a_span) end_control();
+  recorder_.advance_to(end);
+  if (latest_reported_ > now) wake_for(latest_reported_);
 }
 
-/// Wakes up only for what was reported: a timer of its own would keep a simulation running that is otherwise
-/// at its end.
-void WaveProbe::wake_for_next() {
-  if (window_ == Window::before) {
-    if (!changes_.empty() || beyond_window_) wake_at(config_.first_cycle);
-    return;
-  }
-  if (!changes_.empty()) wake_at(changes_.top().cycle);
-  if (beyond_window_) wake_at(config_.last_cycle);
-}
-
-/// Of several notifications SystemC keeps the earliest.
-void WaveProbe::wake_at(Cycles cycle) {
-  const sc_core::sc_time time = clock_.time_at(cycle);
+/// At a cycle that was reported: a timer of its own would keep a simulation running that is otherwise at its
+/// end.
+void WaveProbe::wake_for(Cycles reported) {
+  latest_reported_ = std::max(latest_reported_, reported);
+  if (wake_pending_ || !recorder_.wants_more()) return;
+  const sc_core::sc_time time = clock_.time_at(latest_reported_);
   const sc_core::sc_time& now = sc_core::sc_time_stamp();
-  wake_.notify(time > now ? time - now : sc_core::SC_ZERO_TIME);
-}
-
-void WaveProbe::open() {
-  const QuietTracing quiet;
-  std::filesystem::path without_extension = config_.vcd_file;
-  without_extension.replace_extension();  // SystemC appends it
-  file_ = sc_core::sc_create_vcd_trace_file(without_extension.c_str());
-  file_->set_time_unit(1, sc_core::SC_PS);
-  for (const WaveSignalInfo& signal : wave_signal_table())
-    sc_core::sc_trace(file_, value_of(signal.id), signal.path(), signal.width);
-  window_start_ = sc_core::sc_time_stamp();
-  window_ = Window::open;
-}
-
-void WaveProbe::close_at_end_of_run() {
-  apply_until(clock_.cycle_at(sc_core::sc_time_stamp()));
-  sample(file_);
-  close();
-}
-
-void WaveProbe::close() {
-  sc_core::sc_close_vcd_trace_file(file_);  // writes the present time
-  window_end_ = sc_core::sc_time_stamp();
-  window_ = Window::over;
-  write_initial_time(config_.vcd_file, window_start_.value());
+  if (time <= now) return;
+  wake_pending_ = true;
+  wake_.notify(time - now);
 }
 
 }  // namespace model

@@ -1,35 +1,21 @@
 #pragma once
 
-#include <array>
-#include <filesystem>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
-#include <queue>
-#include <stdexcept>
 #include <string>
 #include <systemc>
 #include <utility>
 #include <vector>
 
+#include "model/chip_config.hpp"
+#include "model/chip_observer.hpp"
 #include "model/clock_domain.hpp"
-#include "model/control_observer.hpp"
-#include "model/pio_observer.hpp"
-#include "model/wave_signals.hpp"
+#include "model/wave_config.hpp"
+#include "model/wave_recorder.hpp"
 
 namespace model {
-
-/// Waves that cannot be written, in one line: file, what was found, what is allowed.
-class WaveError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-struct WaveConfig {
-  std::filesystem::path vcd_file;  ///< ends in ".vcd"; may be a named pipe
-  Cycles first_cycle = 0;          ///< the window is [first_cycle, last_cycle)
-  Cycles last_cycle = std::numeric_limits<Cycles>::max();
-};
 
 /// Running counts of the memory side, as booked by now.
 struct MemoryCounters {
@@ -41,84 +27,121 @@ struct MemoryCounters {
 };
 
 /// Turns what the observed units report, ahead of SystemC time and not in one order, into the signals of
-/// wave_signals.hpp, each changed at its own SystemC time, and has SystemC write them to a VCD file. Wakes up
-/// only at cycles that were reported and at the ends of the window, and only inside of it; calls nothing of
-/// what it observes, so no cycle depends on it.
-class WaveProbe : public sc_core::sc_module, public ControlObserver, public PioObserver {
+/// wave_signals.hpp. Wakes up only at cycles that were reported, to write what can no longer change; calls
+/// nothing of what it observes, so no cycle depends on it.
+class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObserver, public PortObserver {
  public:
   using MemorySampler = std::function<MemoryCounters()>;
 
-  /// Creates the file. Throws WaveError if that is not possible or the window is empty.
-  WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& config, const ClockDomain& clock,
-            MemorySampler memory);
-  /// Closes the file; whether it is complete only finish() tells.
-  ~WaveProbe() override;
+  /// Throws WaveError if the selection or a window is empty.
+  WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& config, const ChipConfig& chip,
+            TextSink sink, MemorySampler memory);
 
   void began(CycleCause cause, Cycles start, int semaphore) override;
-  void began_kernel(const char* name, Cycles start, int enabled_pes) override;
   void spent(CycleCause cause, Cycles start, Cycles finish, int semaphore) override;
+  void kernel_details(const KernelDetails& details) override;
+  void began_kernel(const char* name, Cycles start, int enabled_pes) override;
   void ran_kernel(const char* name, Cycles start, Cycles finish, int enabled_pes) override;
+  void thread_changed(int thread, ThreadState state, Cycles at) override;
+  void filled(int block, int slots, Cycles at) override;
   void started(const PioEvent& event) override;
   void finished(const PioEvent& event) override;
+  void accessed(bool write, Cycles start, Cycles finish) override;
+  void moved_data(bool write, Cycles start, Cycles finish) override;
+  void commanded(int bank, DdrCommand command, std::uint64_t row, Cycles at) override;
+  void passed(Initiator initiator, bool to_ddr, Cycles start, Cycles finish) override;
+  void began_transfer(bool upload, std::uint64_t bytes, Cycles start) override;
+  void ended_transfer(bool upload, std::uint64_t bytes, Cycles start, Cycles finish) override;
 
   /// After the run: ends a window that is still open at the present SystemC time. Throws WaveError if nothing
-  /// ran in the window or the file is not complete (disk full).
+  /// ran in any window.
   void finish();
 
-  /// Kernels by number, the first has number 1.
-  const std::vector<std::string>& kernel_names() const { return kernel_names_; }
-  /// Changes that were reported after their time while the window was open, and are shown late. 0 as long as
-  /// the observed units run ahead of SystemC time.
-  std::uint64_t late_changes() const { return late_changes_; }
+  /// What is recorded, in the order of the file.
+  const std::vector<WaveInstance>& signals() const { return signals_; }
+  bool shows(WaveSignal signal) const;
+  /// Whether the DDR has to report single commands.
+  bool shows_ddr_commands() const {
+    return shows(WaveSignal::ddr_data) || shows(WaveSignal::ddr_bank_command) ||
+           shows(WaveSignal::ddr_bank_row);
+  }
+  /// Kernels and bins by number, the first has number 1.
+  const std::vector<std::string>& kernel_names() const { return kernels_.texts; }
+  const std::vector<std::string>& bin_names() const { return bins_.texts; }
+  /// Changes that were reported too late and are shown late. 0 as long as the observed units run ahead of
+  /// SystemC time.
+  std::uint64_t late_changes() const { return recorder_.late_changes(); }
   /// What the file covers.
-  sc_core::sc_time window_start() const { return window_start_; }
-  sc_core::sc_time window_end() const { return window_end_; }
+  sc_core::sc_time window_start() const { return clock_.time_at(recorder_.first_recorded()); }
+  sc_core::sc_time window_end() const { return clock_.time_at(recorder_.last_recorded()); }
+  /// When kernels of the first blocks in the windows began, up to kBlocksRemembered of them.
+  const std::vector<Cycles>& block_starts() const { return block_starts_; }
+  static constexpr std::size_t kBlocksRemembered = 8;
 
  private:
-  enum class Window : std::uint8_t { before, open, over };
-  struct Change {
-    Cycles cycle;
-    std::uint64_t order;  ///< of reporting: the last one of a cycle holds
-    WaveSignal signal;
-    std::uint64_t value;
-
-    bool operator<(const Change& other) const {  // std::priority_queue has its largest element on top
-      return cycle != other.cycle ? cycle > other.cycle : order > other.order;
-    }
+  static constexpr std::size_t kNotShown = ~std::size_t{0};
+  /// Each is in the order of time; banks follow.
+  enum Stream : std::uint8_t {
+    control_stream,
+    load_stream,
+    save_stream,
+    to_ddr_stream,
+    from_ddr_stream,
+    bus_stream,
+    data_stream,
+    counts_stream,
+    host_stream,
+    first_bank_stream
+  };
+  /// Numbers from 1 for names in the order in which they first appear; string literals, compared by address.
+  struct Numbering {
+    std::vector<const char*> literals;
+    std::vector<std::string> texts;
+    std::uint64_t operator()(const char* name);
   };
 
-  void change(Cycles cycle, WaveSignal signal, std::uint64_t value);
+  void change(std::size_t stream, Cycles cycle, WaveSignal signal, std::uint64_t value, int index = 0);
+  void change_lanes(std::size_t stream, Cycles cycle, WaveSignal signal, const cn::LaneMask* lanes,
+                    std::uint64_t value);
+  void change_label(std::size_t stream, Cycles cycle, WaveSignal bin, const cn::Label& label);
   void change_memory_counters(Cycles cycle);
-  std::uint64_t kernel_number(const char* name);
+  void count_block(Cycles start);
+  std::uint64_t main_class(const cn::IssueTree& issued) const;
+  void end_control();
 
+  void place_signals();
+  static std::vector<WaveRecorder::Signal> recorded_signals(const std::vector<WaveInstance>& signals);
+  void open_windows(const WaveConfig& config);
   void advance();
-  void wake_at(Cycles cycle);
-  void wake_for_next();
-  void apply_until(Cycles cycle);
-  void apply(WaveSignal signal, std::uint64_t value);
-  sc_dt::uint64& value_of(WaveSignal signal) { return values_[std::size_t(signal)]; }
-  void open();
-  void close_at_end_of_run();
-  void close();
+  void wake_for(Cycles reported);
 
-  WaveConfig config_;
+  ChipConfig chip_;
   ClockDomain clock_;
   MemorySampler memory_;
+  std::vector<WaveInstance> signals_;
+  std::vector<std::vector<std::size_t>> places_;  ///< in the file, by kind and index
+  WaveRecorder recorder_;
+  bool shows_counts_;
+  bool shows_pes_;
+  std::string windows_text_;  ///< for messages
 
-  std::array<sc_dt::uint64, kWaveSignals> values_{};  ///< what SystemC samples
-  std::priority_queue<Change> changes_;
-  std::uint64_t reported_ = 0;
-  bool beyond_window_ = false;  ///< something was reported that happens after the window
-  sc_core::sc_event wake_;
+  std::vector<BlockWindow> blocks_;
+  std::uint64_t blocks_begun_ = 0;
+  std::vector<Cycles> block_starts_;
+  cn::Label computed_label_;
+  std::vector<int> fill_by_block_;
+  std::uint64_t fill_ = 0;
+  KernelDetails details_{nullptr, nullptr, {}};
+  Numbering kernels_;
+  Numbering bins_;
 
-  Window window_ = Window::before;
-  sc_core::sc_trace_file* file_ = nullptr;
-  sc_core::sc_time window_start_;
-  sc_core::sc_time window_end_;
-  std::vector<std::string> kernel_names_;
   std::optional<std::pair<Cycles, CycleCause>> span_;  ///< that began last
+  Cycles control_finish_ = 0;                          ///< of the last span
   std::optional<Cycles> kernel_start_;
-  std::uint64_t late_changes_ = 0;
+
+  sc_core::sc_event wake_;
+  bool wake_pending_ = false;
+  Cycles latest_reported_ = 0;
 };
 
 }  // namespace model

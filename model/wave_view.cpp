@@ -33,34 +33,34 @@ double zoom(std::uint64_t span_picoseconds) {
   return -std::log2(double(span_picoseconds) * 200.0 / kWavePixels);
 }
 
+std::string_view outermost(std::string_view scope) {
+  return scope.substr(0, scope.find('.'));
+}
+
 std::string_view group_title(std::string_view scope) {
   if (scope == "control") return "control unit";
   if (scope == "pe_array") return "PE array";
   if (scope == "pio") return "programmed I/O";
   if (scope == "ddr") return "DDR";
   if (scope == "clear_connect") return "ClearConnect";
+  if (scope == "host_link") return "host link";
   return scope;
 }
 
 /// Computing is green, loads are yellow, saves are violet: GTKWave's colours 4, 3 and 7; 0 is its default.
 /// (Its blue is hard to see on black.)
-int colour(WaveSignal signal) {
-  switch (signal) {
-    case WaveSignal::pe_array_busy:
-    case WaveSignal::pe_array_enabled_pes:
-    case WaveSignal::control_kernel:
+int colour(WaveTopic topic) {
+  switch (topic) {
+    case WaveTopic::compute:
       return 4;
-    case WaveSignal::pio_loading:
-    case WaveSignal::pio_load_request:
-    case WaveSignal::pio_load_bytes:
+    case WaveTopic::load:
       return 3;
-    case WaveSignal::pio_saving:
-    case WaveSignal::pio_save_request:
-    case WaveSignal::pio_save_bytes:
+    case WaveTopic::save:
       return 7;
-    default:
-      return 0;
+    case WaveTopic::other:
+      break;
   }
+  return 0;
 }
 
 unsigned flags_of(WaveForm form) {
@@ -75,21 +75,29 @@ unsigned flags_of(WaveForm form) {
   return kRightJustified | kDecimal;
 }
 
-/// SystemC puts everything into a scope of that name.
-std::string name_in_file(const WaveSignalInfo& signal) {
-  const std::string name = "SystemC." + signal.path();
-  return signal.width == 1 ? name : name + "[" + std::to_string(signal.width - 1) + ":0]";
+/// What the viewer shows in place of the name, whose scopes it leaves out: the group says the first, a number
+/// says which thread, bank or PE.
+std::string short_name(const WaveInstance& signal) {
+  std::string name = signal.path.substr(signal.path.find('.') + 1);
+  std::replace(name.begin(), name.end(), '.', ' ');
+  return name;
 }
 
-void write_signal(std::ostream& out, const WaveSignalInfo& signal, const ViewOptions& options) {
+std::string name_in_view(const WaveInstance& signal) {
+  const std::string name = wave_name_in_file(signal);
+  return signal.info->width == 1 ? name : name + "[" + std::to_string(signal.info->width - 1) + ":0]";
+}
+
+void write_signal(std::ostream& out, const WaveInstance& signal, const ViewOptions& options) {
+  const WaveSignalInfo& info = *signal.info;
   const auto filter = std::find_if(options.filter_files.begin(), options.filter_files.end(),
-                                   [&](const auto& entry) { return entry.first == signal.id; });
+                                   [&](const auto& entry) { return entry.first == info.id; });
   const bool filtered = filter != options.filter_files.end();
-  out << "@" << std::hex << (flags_of(signal.form) | (filtered ? kFileFilter : 0u)) << std::dec << "\n";
-  out << "[color] " << colour(signal.id) << "\n";
+  out << "@" << std::hex << (flags_of(info.form) | (filtered ? kFileFilter : 0u)) << std::dec << "\n";
+  out << "[color] " << colour(info.topic) << "\n";
   if (filtered) out << "^" << filter - options.filter_files.begin() + 1 << " " << filter->second << "\n";
-  out << name_in_file(signal) << "\n";
-  if (signal.form != WaveForm::plot) return;
+  out << "+{" << short_name(signal) << "} " << name_in_view(signal) << "\n";
+  if (info.form != WaveForm::plot) return;
   out << "@" << std::hex << kAnalogStretch << std::dec << "\n";
   for (int row = 1; row < kPlotRows; ++row) out << "-\n";
 }
@@ -108,27 +116,28 @@ void check_name(const std::string& file) {
 
 void write_wave_view(std::ostream& out, const ViewOptions& options) {
   check_name(options.view_file);
-  check_name(options.vcd_file);
+  check_name(options.wave_file);
   for (const auto& filter : options.filter_files) check_name(filter.second);
   if (options.span_picoseconds == 0)
     throw std::invalid_argument("wave view: found a span of 0; allowed: 1 ps or more");
 
-  out << "[dumpfile] \"" << options.vcd_file << "\"\n[savefile] \"" << options.view_file << "\"\n";
+  out << "[dumpfile] \"" << options.wave_file << "\"\n[savefile] \"" << options.view_file << "\"\n";
   out << "[timestart] " << options.first_picoseconds << "\n";
   out << "[size] " << kWindowWidth << " " << kWindowHeight << "\n";
   out << "*" << zoom(options.span_picoseconds) << " -1\n";
   out << "[sst_width] 0\n[signals_width] " << kSignalsWidth << "\n[sst_expanded] 0\n";
 
-  std::string_view scope;
-  for (const WaveSignalInfo& signal : wave_signal_table()) {
-    if (signal.scope != scope) {
-      if (!scope.empty()) write_group_line(out, kGroupEnd, group_title(scope));
-      scope = signal.scope;
-      write_group_line(out, kGroupBegin, group_title(scope));
+  std::string_view group;
+  for (const WaveInstance& signal : options.signals) {
+    const std::string_view scope = outermost(signal.info->scope);
+    if (scope != group) {
+      if (!group.empty()) write_group_line(out, kGroupEnd, group_title(group));
+      group = scope;
+      write_group_line(out, kGroupBegin, group_title(group));
     }
     write_signal(out, signal, options);
   }
-  write_group_line(out, kGroupEnd, group_title(scope));
+  if (!group.empty()) write_group_line(out, kGroupEnd, group_title(group));
 }
 
 void write_value_filter(std::ostream& out, const std::vector<ValueName>& names) {

@@ -45,30 +45,6 @@ fs::path create_temporary(const fs::path& path) {
   }
 }
 
-/// Removes the file at the end of the scope, unless it was renamed away.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target) : path_(create_temporary(target)) {}
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove(path_, ignored);
-  }
-
-  const fs::path& path() const { return path_; }
-
-  void rename_to(const fs::path& target) {
-    std::error_code error;
-    fs::rename(path_, target, error);
-    if (error) throw RunError(target.string() + ": cannot be replaced: " + error.message());
-    path_.clear();
-  }
-
- private:
-  fs::path path_;
-};
-
 void write_all(int descriptor, std::string_view bytes, const fs::path& target) {
   while (!bytes.empty()) {
     const ssize_t written = write(descriptor, bytes.data(), bytes.size());
@@ -92,6 +68,20 @@ void write_bytes(const fs::path& temporary, std::string_view bytes, const fs::pa
 }
 
 }  // namespace
+
+TemporaryFile::TemporaryFile(const fs::path& target) : path_(create_temporary(target)) {}
+
+TemporaryFile::~TemporaryFile() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove(path_, ignored);
+}
+
+void TemporaryFile::rename_to(const fs::path& target) {
+  std::error_code error;
+  fs::rename(path_, target, error);
+  if (error) throw RunError(target.string() + ": cannot be replaced: " + error.message());
+  path_.clear();
+}
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
   TemporaryFile temporary(path);

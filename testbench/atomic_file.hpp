@@ -6,6 +6,24 @@
 
 namespace testbench {
 
+/// A new, empty file in the directory of `target`, removed at the end of the scope unless it was renamed
+/// away.
+class TemporaryFile {
+ public:
+  /// Throws InputError if nothing can be created there or `target` is not a regular file.
+  explicit TemporaryFile(const std::filesystem::path& target);
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile();
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Throws RunError.
+  void rename_to(const std::filesystem::path& target);
+
+ private:
+  std::filesystem::path path_;
+};
+
 /// Calls `write` with the name of a new, empty file in the directory of `path`, then renames that file to
 /// `path`: `path` holds either its old content or all of the new, never a part. If anything fails the
 /// temporary file is removed. Throws InputError if nothing can be created there or `path` is not a regular

@@ -9,6 +9,7 @@
 #include "testbench/host_time.hpp"
 #include "testbench/mono_image.hpp"
 #include "testbench/native_machine.hpp"
+#include "testbench/observation.hpp"
 #include "testbench/results.hpp"
 
 namespace testbench {
@@ -119,15 +120,14 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
     model::Csx600 chip("csx600", options.chip, options.timing);
     HostPc host("host", chip, run.image(), run.result().film);
     host.report_reads_to(run.check_hazards(chip.control_unit, [&] { return chip.control_unit.now(); }));
-    std::optional<WaveFiles> waves;
-    if (options.waves) waves.emplace(*options.waves, chip);
+    Observation observation(options.observation, chip);
     chip.control_unit.load([&](cn::Machine& machine) { run.firmware(machine); });
     sc_core::sc_start();
     chip.control_unit.require_finished();
     if (!host.finished()) throw RunError("the firmware has ended, but the host has not");
     run.result().chip = collect_statistics(chip, host.finished_cycle());
     RenderResult result = run.finish();
-    if (waves) waves->finish();
+    result.observation_failures = observation.finish();
     return result;
   });
 }
@@ -151,6 +151,10 @@ RenderResult render_natively(const Scene& scene, const RenderOptions& options,
     run.firmware(machine);
     return run.finish();
   });
+}
+
+void require_observed(const RenderResult& result) {
+  if (!result.observation_failures.empty()) throw RunError(result.observation_failures);
 }
 
 }  // namespace testbench

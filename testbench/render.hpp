@@ -10,8 +10,8 @@
 #include "model/timing_style.hpp"
 #include "testbench/chip_statistics.hpp"
 #include "testbench/film.hpp"
+#include "testbench/observation_options.hpp"
 #include "testbench/scene/scene.hpp"
-#include "testbench/wave_files.hpp"
 
 namespace testbench {
 
@@ -21,8 +21,8 @@ struct RenderOptions {
   path_tracer::Work work;
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
   path_tracer::Level level = path_tracer::Level::x86_64_v2;
-  std::optional<WaveOptions> waves;  ///< on the chip only
-  bool check_hazards = false;        ///< with kernels built for it, at x86-64-v2 (model/hazard_checker.hpp)
+  ObservationOptions observation;  ///< on the chip only
+  bool check_hazards = false;      ///< with kernels built for it, at x86-64-v2 (model/hazard_checker.hpp)
 };
 
 struct RenderResult {
@@ -31,6 +31,7 @@ struct RenderResult {
   Film film;
   path_tracer::RunCounts counts;
   std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip
+  std::string observation_failures;    ///< files that could not be completed, one line each
   double cpu_seconds = 0;              ///< of the run itself, without loading and writing
   double wall_seconds = 0;
 };
@@ -46,6 +47,9 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
 /// The same firmware without SystemC: the same image, no time.
 RenderResult render_natively(const Scene& scene, const RenderOptions& options,
                              const RenderProgress& progress = {});
+
+/// Throws RunError if what was to be observed could not be written.
+void require_observed(const RenderResult& result);
 
 using cn::widest_level;
 

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <sstream>
 
-#include "model/wave_view.hpp"
 #include "testbench/atomic_file.hpp"
 #include "testbench/error.hpp"
 
 namespace testbench {
 namespace {
 
-/// The control unit catches up with SystemC time this often, so that few changes wait to be shown.
-constexpr model::Cycles kSyncCycles = 50'000;
-
-/// What the view opens on: a few blocks of the paper's intersection bin.
+/// What the view opens on when fewer blocks were computed: a few of the paper's intersection bin.
 constexpr std::uint64_t kViewPicoseconds = 300'000'000;
+
+/// Blocks that the view opens on, from the second in the window on: its neighbours are seen as well.
+constexpr std::size_t kBlocksInView = 4;
 
 model::MemoryCounters memory_counters(const model::Csx600& chip) {
   const model::DdrStatistics ddr = chip.ddr_statistics();
@@ -22,75 +21,103 @@ model::MemoryCounters memory_counters(const model::Csx600& chip) {
           chip.clear_connect.statistics(model::Initiator::pio).bytes};
 }
 
-}  // namespace
-
-void require_writable_waves(const WaveOptions& options) {
-  if (options.vcd.extension() != ".vcd")
-    throw InputError("--vcd: found '" + options.vcd.string() + "', allowed is a name that ends in .vcd");
-  if (options.first_cycle >= options.last_cycle)
-    throw InputError("--vcd-cycles: found " + std::to_string(options.first_cycle) + ":" +
-                     std::to_string(options.last_cycle) + ", allowed is a first cycle below the last");
-  require_writable(options.vcd);
+std::filesystem::path sibling(const std::filesystem::path& file, const std::string& suffix) {
+  std::filesystem::path path = file;
+  return path.replace_extension().concat(suffix);
 }
 
-WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
-    : chip_(chip), vcd_(options.vcd), temporary_(sibling(".partial.vcd")) {
+void add_names(std::vector<model::ValueName>& names, std::uint64_t first,
+               const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    std::string name = text;
+    std::replace(name.begin(), name.end(), ' ', '_');  // a translate filter ends a name at a blank
+    names.push_back({first++, name});
+  }
+}
+
+}  // namespace
+
+void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip) {
+  const std::filesystem::path extension = options.file.extension();
+  if (extension != ".vcd" && extension != ".fst")
+    throw InputError("--waves: found '" + options.file.string() +
+                     "', allowed is a name that ends in .vcd or .fst");
+  require_writable(options.file);
+  require_writable(sibling(options.file, ".gtkw"));
   try {
-    const model::WaveConfig config{temporary_, options.first_cycle, options.last_cycle};
-    probe_.emplace("wave_probe", config, chip.clock, [&chip] { return memory_counters(chip); });
+    model::check_waves(options.config, chip);
   } catch (const model::WaveError& error) {
     throw InputError(error.what());
   }
-  chip.control_unit.set_observer(&*probe_, kSyncCycles);
-  chip.dma_engine.set_observer(&*probe_);
 }
 
-WaveFiles::~WaveFiles() {
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
-}
-
-std::filesystem::path WaveFiles::sibling(const std::string& suffix) const {
-  std::filesystem::path path = vcd_;
-  return path.replace_extension().concat(suffix);
+WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
+    : chip_(chip), file_(options.file), stream_(make_wave_stream(options.file)) {
+  try {
+    probe_ = std::make_unique<model::WaveProbe>(
+        "wave_probe", options.config, chip.config(), [this](std::string_view text) { stream_->write(text); },
+        [&chip] { return memory_counters(chip); });
+  } catch (const model::WaveError& error) {
+    throw InputError(error.what());
+  }
+  using model::WaveSignal;
+  if (probe_->shows(WaveSignal::clear_connect_to_ddr) || probe_->shows(WaveSignal::clear_connect_from_ddr))
+    chip.clear_connect.set_observer(&*probe_);
+  const bool shows_ddr = probe_->shows(WaveSignal::ddr_bus) || probe_->shows_ddr_commands();
+  if (chip.mono_ddr && shows_ddr) chip.mono_ddr->set_observer(&*probe_, probe_->shows_ddr_commands());
 }
 
 void WaveFiles::finish() {
   try {
     probe_->finish();
   } catch (const model::WaveError& error) {
-    std::string message = error.what();  // speaks of the temporary name
-    const std::size_t found = message.find(temporary_.string());
-    if (found != std::string::npos) message.replace(found, temporary_.string().size(), vcd_.string());
-    throw RunError(message);
+    throw RunError(file_.string() + ": " + error.what());
   }
-  std::filesystem::rename(temporary_, vcd_);
+  stream_->finish();
   write_view();
 }
 
-void WaveFiles::add_semaphore_names(std::vector<model::ValueName>& names) const {
-  const std::vector<std::string>& semaphores = chip_.control_unit.semaphore_names();
-  for (std::size_t i = 0; i < semaphores.size(); ++i) {
-    std::string name = semaphores[i];
-    std::replace(name.begin(), name.end(), ' ', '_');  // a translate filter ends a name at a blank
-    names.push_back({i, name});
+std::vector<model::ValueName> WaveFiles::value_names(const model::WaveSignalInfo& signal) const {
+  std::vector<model::ValueName> names = signal.fixed_names;
+  switch (signal.names) {
+    case model::WaveNames::kernels:
+      add_names(names, 1, probe_->kernel_names());
+      break;
+    case model::WaveNames::bins:
+      add_names(names, 1, probe_->bin_names());
+      break;
+    case model::WaveNames::semaphores:
+      add_names(names, 0, chip_.control_unit.semaphore_names());
+      break;
+    default:
+      break;
   }
+  return names;
+}
+
+void WaveFiles::set_span(model::ViewOptions& view) const {
+  const std::uint64_t start = probe_->window_start().value();
+  const std::uint64_t recorded = probe_->window_end().value() - start;
+  view.first_picoseconds = start;
+  view.span_picoseconds = std::clamp<std::uint64_t>(recorded, 1, kViewPicoseconds);
+  const std::vector<model::Cycles>& blocks = probe_->block_starts();
+  if (blocks.size() < kBlocksInView + 2) return;
+  view.first_picoseconds = chip_.clock.time_at(blocks[1]).value();
+  view.span_picoseconds = chip_.clock.time_at(blocks[kBlocksInView + 1]).value() - view.first_picoseconds;
 }
 
 void WaveFiles::write_view() const {
-  const auto& table = model::wave_signal_table();
   model::ViewOptions view;
-  view.view_file = sibling(".gtkw").filename().string();
-  view.vcd_file = vcd_.filename().string();
-  view.first_picoseconds = probe_->window_start().value();
-  const std::uint64_t recorded = probe_->window_end().value() - probe_->window_start().value();
-  view.span_picoseconds = std::clamp<std::uint64_t>(recorded, 1, kViewPicoseconds);
-  for (const model::WaveSignalInfo& signal : table) {
-    auto names = model::wave_value_names(signal, probe_->kernel_names());
-    if (signal.id == model::WaveSignal::control_semaphore) add_semaphore_names(names);
-    if (names.empty()) continue;
-    const std::filesystem::path file =
-        sibling("." + std::string(signal.scope) + "_" + std::string(signal.name) + ".txt");
+  view.view_file = sibling(file_, ".gtkw").filename().string();
+  view.wave_file = file_.filename().string();
+  view.signals = probe_->signals();
+  set_span(view);
+  for (const model::WaveSignalInfo& signal : model::wave_signal_table()) {
+    const std::vector<model::ValueName> names = value_names(signal);
+    if (names.empty() || !probe_->shows(signal.id)) continue;
+    std::string suffix = "." + std::string(signal.scope) + "_" + std::string(signal.name) + ".txt";
+    std::replace(suffix.begin() + 1, suffix.end() - 4, '.', '_');
+    const std::filesystem::path file = sibling(file_, suffix);
     std::ostringstream filter;
     model::write_value_filter(filter, names);
     write_bytes_atomically(file, filter.str());
@@ -98,7 +125,7 @@ void WaveFiles::write_view() const {
   }
   std::ostringstream text;
   model::write_wave_view(text, view);
-  write_bytes_atomically(sibling(".gtkw"), text.str());
+  write_bytes_atomically(sibling(file_, ".gtkw"), text.str());
 }
 
 }  // namespace testbench

@@ -1,48 +1,43 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "model/csx600.hpp"
 #include "model/wave_probe.hpp"
 #include "model/wave_signals.hpp"
+#include "model/wave_view.hpp"
+#include "testbench/observation_options.hpp"
+#include "testbench/output_stream.hpp"
 
 namespace testbench {
 
-/// Which part of a run to show as waves.
-struct WaveOptions {
-  std::filesystem::path vcd;  ///< ends in ".vcd"
-  model::Cycles first_cycle = 0;
-  model::Cycles last_cycle = ~model::Cycles{0};  ///< exclusive
-};
-
-/// Throws InputError when the trace cannot be written, or a window is empty.
-void require_writable_waves(const WaveOptions& options);
+/// Throws InputError when the trace or what stands beside it cannot be written, or the selection or a window
+/// is empty.
+void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip);
 
 /// The waves of one run: the trace, a GTKWave view on its first blocks and the names of states and kernels.
-/// The trace has a temporary name until finish(); without it, nothing is left.
 class WaveFiles {
  public:
   WaveFiles(const WaveOptions& options, model::Csx600& chip);
-  ~WaveFiles();
-  WaveFiles(const WaveFiles&) = delete;
-  WaveFiles& operator=(const WaveFiles&) = delete;
 
-  /// After the run. Throws RunError if nothing ran in the window or a file is not complete.
+  model::ChipObserver& observer() { return *probe_; }
+
+  /// After the run. Throws RunError if nothing ran in the windows or a file is not complete; then none of
+  /// them is left.
   void finish();
 
  private:
-  std::filesystem::path sibling(const std::string& suffix) const;
   void write_view() const;
-  void add_semaphore_names(std::vector<model::ValueName>& names) const;
+  std::vector<model::ValueName> value_names(const model::WaveSignalInfo& signal) const;
+  void set_span(model::ViewOptions& view) const;
 
   model::Csx600& chip_;
-  std::filesystem::path vcd_;
-  std::filesystem::path temporary_;
-  std::optional<model::WaveProbe> probe_;
+  std::filesystem::path file_;
+  std::unique_ptr<OutputStream> stream_;
+  std::unique_ptr<model::WaveProbe> probe_;
 };
 
 }  // namespace testbench

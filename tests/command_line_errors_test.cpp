@@ -114,7 +114,7 @@ TEST_F(CommandLineErrors, Memory) {
 TEST_F(CommandLineErrors, PolySramOverflowShowsTheBufferMap) {
   for (const Words& how :
        {Words{"--n", "8", "--set", "poly.sram_bytes=4096"}, Words{"--bin-blocks", "400"},
-        Words{"--bin-blocks", "400", "--native"}, Words{"--bin-blocks", "400", "--vcd", "a.vcd"}}) {
+        Words{"--bin-blocks", "400", "--native"}, Words{"--bin-blocks", "400", "--waves", "a.vcd"}}) {
     Words arguments = {"render", kCornellBox, "--size", "8x6", "--exr", "a.exr"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     const CommandResult result = run(arguments);
@@ -202,7 +202,8 @@ TEST_F(CommandLineErrors, UnwritableOutputsAreFoundBeforeTheRun) {
   const auto expect_output_error = [this](const char* option, const std::string& file, const Words& parts) {
     expect_error({"render", kCornellBox, "--samples", "100000000", option, file}, parts);
   };
-  for (const char* option : {"--exr", "--png", "--stats", "--json", "--vcd"}) {
+  for (const char* option :
+       {"--exr", "--png", "--stats", "--json", "--waves", "--transactions", "--timeline"}) {
     expect_output_error(option, "none/a.vcd", {"none/a.vcd"});
     expect_output_error(option, "/dev/null/a.vcd", {"/dev/null/a.vcd"});
   }
@@ -214,7 +215,7 @@ TEST_F(CommandLineErrors, UnwritableOutputsAreFoundBeforeTheRun) {
 
 TEST_F(CommandLineErrors, OutputsInOneFile) {
   expect_error({"render", kCornellBox, "--exr", "a", "--png", "./a"}, {"--exr", "--png", "./a"});
-  expect_error({"render", kCornellBox, "--vcd", "a.vcd", "--stats", "a.vcd"}, {"--vcd", "--stats"});
+  expect_error({"render", kCornellBox, "--waves", "a.vcd", "--stats", "a.vcd"}, {"--waves", "--stats"});
 }
 
 TEST_F(CommandLineErrors, Calibrate) {
@@ -248,17 +249,45 @@ TEST_F(CommandLineErrors, ConstantsThatMeetNothingAreNotWritten) {
 }
 
 TEST_F(CommandLineErrors, Waves) {
-  expect_render_error({"--vcd", "a.vcd", "--native"}, {"--vcd", "--native"});
-  expect_render_error({"--vcd", "a.txt"}, {"--vcd", "a.txt", ".vcd"});
-  expect_render_error({"--vcd-cycles", "1:2"}, {"--vcd-cycles", "--vcd"});
-  for (const char* cycles : {"5", "5:2", "5:5", "a:b", "-1:5", "1:2:3", "1:-2"})
-    expect_render_error({"--vcd", "a.vcd", "--vcd-cycles", cycles}, {"--vcd-cycles", cycles});
+  expect_render_error({"--waves", "a.vcd", "--native"}, {"--waves", "--native"});
+  expect_render_error({"--timeline", "a.json", "--native"}, {"--timeline", "--native"});
+  expect_render_error({"--waves", "a.txt"}, {"--waves", "a.txt", ".vcd", ".fst"});
+  for (const char* window : {"5", "5:2", "5:5", "a:b", "-1:5", "1:2:3", "1:-2", "1ms:1us", "1x:2x",
+                             "2h:", "nan s:", "-1ms:", "1e30s:"})
+    expect_render_error({"--waves", "a.vcd", "--waves-window", window}, {"--waves-window", window});
+  for (const char* blocks : {"0", "1:0", "a", "", "1:", ":2", "1:2:3", "-1"})
+    expect_render_error({"--waves", "a.vcd", "--waves-blocks=" + std::string(blocks)},
+                        {"--waves-blocks", blocks});
+  for (const char* pes : {"96", "5-2", "a", "1,", ",1", "1-", "-1", "0,,1"})
+    expect_render_error({"--waves", "a.vcd", "--waves-pes=" + std::string(pes)},
+                        {"--waves-pes", pes, "0 to 95"});
+  expect_render_error({"--waves", "a.vcd", "--waves-level", "all"}, {"--waves-level", "all"});
+  expect_render_error({"--waves", "a.fst", "--waves-signals", "pio.*", "--waves-signals", "none.*"},
+                      {"'none.*'", "csx600 waves"});
+  expect_render_error({"--waves", "a.vcd", "--waves-signals", "ddr.data", "--waves-level", "overview"},
+                      {"leaves no signal"});
+  for (const Words& alone :
+       {Words{"--waves-window", "1:2"}, Words{"--waves-blocks", "1"}, Words{"--waves-signals", "*"},
+        Words{"--waves-pes", "1"}, Words{"--waves-level", "units"}})
+    expect_render_error(alone, {alone[0], "without --waves"});
 }
 
-TEST_F(CommandLineErrors, WindowAfterTheRunFailsIt) {
-  expect_error({"render", kCornellBox, "--size", "8x6", "--samples", "1", "--exr", "a.exr", "--vcd", "a.vcd",
-                "--vcd-cycles", "999999999999:"},
-               {"a", "window", "999999999999"}, 1);
+TEST_F(CommandLineErrors, WavesWithoutTheConverter) {
+  const char* const path = std::getenv("PATH");
+  const std::string before = path == nullptr ? "" : path;
+  setenv("PATH", "/nowhere", 1);
+  expect_render_error({"--waves", "a.fst"}, {"a.fst", "vcd2fst", "gtkwave", ".vcd"});
+  setenv("PATH", before.c_str(), 1);
+}
+
+TEST_F(CommandLineErrors, WindowAfterTheRunFailsItButLosesNoImage) {
+  const CommandResult result = run({"render", kCornellBox, "--size", "8x6", "--samples", "1", "--exr",
+                                    "a.exr", "--waves", "a.vcd", "--waves-window", "999999999999:"});
+  EXPECT_EQ(result.exit_code, 1);
+  ASSERT_EQ(result.error_lines().size(), 1u) << result.error;
+  for (const char* part : {"a.vcd", "window", "999999999999"})
+    EXPECT_NE(result.error.find(part), std::string::npos) << result.error;
+  EXPECT_EQ(files(), Words{"a.exr"});
 }
 
 }  // namespace

@@ -38,8 +38,8 @@ class CommandLine : public test_support::CommandLineFixture {
 };
 
 TEST_F(CommandLine, RenderWritesEveryOutputAndNothingElse) {
-  const CommandResult result = render({"--exr", "a.exr", "--png", "a.png", "--stats", "a.json", "--vcd",
-                                       "a.vcd", "--vcd-cycles", "100000:200000"});
+  const CommandResult result = render({"--exr", "a.exr", "--png", "a.png", "--stats", "a.json", "--waves",
+                                       "a.vcd", "--waves-window", "100000:200000"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.error, "");
   for (const char* line : {"simulated time", "segments/s", "PE utilisation", "SIMD efficiency", "exposed DMA",
@@ -169,7 +169,7 @@ void wait_until_interrupts_are_caught(pid_t child) {
 }
 
 TEST_F(CommandLine, InterruptEndsARunCleanly) {
-  for (const std::vector<std::string>& how : {Files{}, Files{"--native"}, Files{"--vcd", "a.vcd"}}) {
+  for (const std::vector<std::string>& how : {Files{}, Files{"--native"}, Files{"--waves", "a.vcd"}}) {
     Files arguments = {"render", kCornellBox, "--samples", "1000000", "--exr",
                        "a.exr",  "--png",     "a.png",     "--stats", "a.json"};
     arguments.insert(arguments.end(), how.begin(), how.end());

@@ -233,7 +233,7 @@ TEST_F(Invariants, StatisticsRepeatByteForByte) {
   }
 }
 
-TEST_F(Invariants, WavesChangeNothing) {
+TEST_F(Invariants, WavesLogsAndTimelinesChangeNothing) {
   const std::filesystem::path directory =
       std::filesystem::path(testing::TempDir()) / ("invariants_" + std::to_string(getpid()));
   std::filesystem::create_directory(directory);
@@ -247,12 +247,15 @@ TEST_F(Invariants, WavesChangeNothing) {
         const RenderResult without_waves = on_chip(scene, options);
         const std::string plain = statistics(options, without_waves);
         RenderOptions with_waves = options;
-        with_waves.waves = testbench::WaveOptions{};
-        with_waves.waves->vcd = (directory / "waves.vcd").string();
+        testbench::WaveOptions& waves =
+            with_waves.observation.waves.emplace(testbench::WaveOptions{directory / "waves.vcd", {}});
+        with_waves.observation.transactions = directory / "transactions.jsonl";
+        with_waves.observation.timeline = directory / "timeline.json";
+        waves.config.selection.level = model::WaveLevel::detail;
         EXPECT_EQ(statistics(options, on_chip(scene, with_waves)), plain) << "n " << n;
-        EXPECT_GT(std::filesystem::file_size(with_waves.waves->vcd), 10000u);
-        with_waves.waves->first_cycle = without_waves.chip->total_cycles / 2;
-        with_waves.waves->last_cycle = without_waves.chip->total_cycles / 4 * 3;
+        EXPECT_GT(std::filesystem::file_size(waves.file), 10000u);
+        waves.config.windows = {
+            {without_waves.chip->total_cycles / 2, without_waves.chip->total_cycles / 4 * 3}};
         EXPECT_EQ(statistics(options, on_chip(scene, with_waves)), plain) << "n " << n << ", a window";
       }
     }

@@ -89,7 +89,7 @@ TEST_F(TimingAgreement, ApproximatelyTimedRunsRepeatByteForByte) {
   EXPECT_EQ(statistics(), statistics());
 }
 
-TEST_F(TimingAgreement, WavesChangeNoCycleOfAnApproximatelyTimedRun) {
+TEST_F(TimingAgreement, WavesLogsAndTimelinesChangeNoCycleOfAnApproximatelyTimedRun) {
   const Scene scene = test_support::small_cornell_box({17, 5});
   for (const int n : {0, 1, 3}) {
     for (const int host_latency_cycles : {2100, 1000000}) {
@@ -97,10 +97,14 @@ TEST_F(TimingAgreement, WavesChangeNoCycleOfAnApproximatelyTimedRun) {
       options.program.n = n;
       options.chip.host.latency_cycles = host_latency_cycles;
       const RenderResult plain = run(scene, options, TimingStyle::approximately_timed);
-      options.waves = testbench::WaveOptions{};
-      options.waves->vcd = testing::TempDir() + "timing_agreement.vcd";
+      const std::string name = testing::TempDir() + "timing_agreement";
+      options.observation.waves.emplace(testbench::WaveOptions{name + ".vcd", {}});
+      options.observation.waves->config.selection.level = model::WaveLevel::detail;
+      options.observation.transactions = name + ".jsonl";
+      options.observation.timeline = name + ".json";
       const RenderResult with_waves = run(scene, options, TimingStyle::approximately_timed);
       EXPECT_EQ(testbench::to_json(*with_waves.chip).dump(), testbench::to_json(*plain.chip).dump());
+      EXPECT_EQ(with_waves.observation_failures, "");
     }
   }
 }

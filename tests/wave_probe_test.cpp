@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "model/clear_connect_timing.hpp"
 #include "tests/support/wave_probe_fixture.hpp"
 
 namespace {
@@ -25,11 +26,12 @@ TEST_F(WaveProbe, FileHoldsTheSignalsOfTheTableAndNothingElse) {
     reporter.wait_until(10);
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(vcd.timescale(), "1 ps");
-  EXPECT_EQ(vcd.signals().size(), std::size_t(model::kWaveSignals));
-  for (const model::WaveSignalInfo& signal : model::wave_signal_table())
-    EXPECT_EQ(vcd.signal(signal.path()).width, signal.width) << signal.path();
+  const std::vector<model::WaveInstance> signals = model::wave_instances(chip);
+  EXPECT_EQ(vcd.signals().size(), signals.size());
+  for (const model::WaveInstance& signal : signals)
+    EXPECT_EQ(vcd.signal(signal.path).width, signal.info->width) << signal.path;
 }
 
 TEST_F(WaveProbe, SpansChangeAtTheirTimes) {
@@ -48,7 +50,7 @@ TEST_F(WaveProbe, SpansChangeAtTheirTimes) {
     reporter.wait_until(130);
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(changes(vcd, "control.state"), (List{{0, state(CycleCause::mono)},
                                                  {15'000, state(CycleCause::wait_load)},
                                                  {40'000, state(CycleCause::poly)},
@@ -76,20 +78,14 @@ TEST_F(WaveProbe, UnitsThatReportInAnyOrderAreSortedByTime) {
     reporter.wait_until(104);
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(changes(vcd, "pio.loading"), (List{{0, 0}, {50'000, 1}, {80'000, 0}, {95'000, 1}, {104'000, 0}}));
   EXPECT_EQ(changes(vcd, "pio.saving"), (List{{0, 0}, {80'000, 1}, {95'000, 0}}));
-  EXPECT_EQ(changes(vcd, "pio.state"), (List{{0, 0}, {50'000, 1}, {80'000, 2}, {95'000, 1}, {104'000, 0}}));
   EXPECT_EQ(changes(vcd, "pio.queue_depth"), (List{{0, 0}, {50'000, 2}, {80'000, 1}, {95'000, 0}}));
-  EXPECT_EQ(changes(vcd, "pio.load_request"), (List{{0, model::kNoRequest},
-                                                    {50'000, 0},
-                                                    {80'000, model::kNoRequest},
-                                                    {95'000, 2},
-                                                    {100'000, 3},
-                                                    {104'000, model::kNoRequest}}));
-  EXPECT_EQ(changes(vcd, "pio.load_bytes"),
-            (List{{0, 0}, {50'000, 6144}, {80'000, 0}, {95'000, 64}, {104'000, 0}}));
-  EXPECT_EQ(changes(vcd, "pio.save_bytes"), (List{{0, 0}, {80'000, 768}, {95'000, 0}}));
+  EXPECT_EQ(changes(vcd, "pio.load_request"),
+            (List{{0, model::kNoRequest}, {50'000, 0}, {95'000, 2}, {100'000, 3}}));
+  EXPECT_EQ(changes(vcd, "pio.load_bytes"), (List{{0, 0}, {50'000, 6144}, {95'000, 64}}));
+  EXPECT_EQ(changes(vcd, "pio.save_bytes"), (List{{0, 0}, {80'000, 768}}));
 }
 
 TEST_F(WaveProbe, TwoEnginesShowSideBySide) {
@@ -100,8 +96,9 @@ TEST_F(WaveProbe, TwoEnginesShowSideBySide) {
     reporter.wait_until(100);
   });
   probe->finish();
-  const VcdReader vcd(file());
-  EXPECT_EQ(changes(vcd, "pio.state"), (List{{0, 0}, {10'000, 1}, {30'000, 3}, {60'000, 2}, {80'000, 0}}));
+  const VcdReader vcd = this->vcd();
+  EXPECT_EQ(changes(vcd, "pio.loading"), (List{{0, 0}, {10'000, 1}, {60'000, 0}}));
+  EXPECT_EQ(changes(vcd, "pio.saving"), (List{{0, 0}, {30'000, 1}, {80'000, 0}}));
   EXPECT_EQ(vcd.value_at("pio.load_request", 50'000), 0u);
   EXPECT_EQ(vcd.value_at("pio.save_request", 50'000), 1u);
   EXPECT_EQ(vcd.value_at("pio.save_bytes", 70'000), 64u);
@@ -117,7 +114,7 @@ TEST_F(WaveProbe, EmptySpansLeaveNoTrace) {
     reporter.wait_until(30);
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(changes(vcd, "pio.loading"), (List{{0, 0}}));
   EXPECT_EQ(changes(vcd, "control.kernel"), (List{{0, 0}}));
   EXPECT_EQ(vcd.time_at_value("control.state", state(CycleCause::mono)), 1'000u);
@@ -136,7 +133,7 @@ TEST_F(WaveProbe, MemoryCountsAppearWhenTheirRequestIsOverAndNeverFall) {
     reporter.wait_until(95);
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(changes(vcd, "ddr.page_hits"), (List{{0, 0}, {40'000, 4}}));
   EXPECT_EQ(changes(vcd, "ddr.page_misses"), (List{{0, 0}, {40'000, 1}}));
   EXPECT_EQ(changes(vcd, "ddr.bytes_read"), (List{{0, 0}, {40'000, 6144}, {95'000, 6176}}));
@@ -156,7 +153,7 @@ TEST_F(WaveProbe, PulsesOfOneCycleSurviveLateInALongRun) {
     reporter.wait_until(begin + 100);
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(vcd.signal("control.semaphore").changes.size(), 101u);
   const double cycle = 1e12 / 210e6;
   EXPECT_NEAR(double(vcd.time_at_value("control.semaphore", 5)) / cycle, 50, 0.05);
@@ -167,7 +164,6 @@ TEST_F(WaveProbe, TotalsOfTheFileEqualTheReportersCounters) {
   std::array<Cycles, model::kCycleCauses> by_cause{};
   Cycles pio_busy = 0;
   Cycles kernel_cycles = 0;
-  Cycles end = 0;
   simulate([&](Reporter& reporter) {
     std::uint64_t random = 12345;
     const auto below = [&](std::uint64_t limit) {
@@ -193,17 +189,15 @@ TEST_F(WaveProbe, TotalsOfTheFileEqualTheReportersCounters) {
       now += cycles;
       if (below(3) == 0) reporter.wait_until(now);
     }
-    end = std::max(now, pio_free);
-    reporter.wait_until(end);
+    reporter.wait_until(std::max(now, pio_free));
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   for (int cause = 0; cause < model::kCycleCauses; ++cause)
     EXPECT_EQ(vcd.time_at_value("control.state", std::uint64_t(cause) + 1),
               1000 * by_cause[std::size_t(cause)])
         << model::cycle_cause_name(static_cast<CycleCause>(cause));
   EXPECT_EQ(vcd.time_at_value("pio.loading", 1) + vcd.time_at_value("pio.saving", 1), 1000 * pio_busy);
-  EXPECT_EQ(vcd.time_at_value("pio.state", 0), 1000 * (end - pio_busy));
   EXPECT_EQ(vcd.time_at_value("pe_array.busy", 1), 1000 * kernel_cycles);
   EXPECT_EQ(probe->late_changes(), 0u);
 }
@@ -217,22 +211,123 @@ TEST_F(WaveProbe, ChangesAtTheStopAreDumped) {
     sc_core::sc_stop();
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(vcd.value_at("control.state", 80'000), 0u);
   EXPECT_EQ(vcd.value_at("pio.saving", 80'000), 0u);
   EXPECT_EQ(vcd.value_at("pio.saving", 79'999), 1u);
 }
 
-TEST_F(WaveProbe, LateReportsAreCounted) {
+TEST_F(WaveProbe, LateReportsAreCountedAndShownLate) {
   make_probe();
   simulate([&](Reporter& reporter) {
-    reporter.wait_until(100);
-    load(0, 90, 120);
-    reporter.wait_until(120);
+    for (Cycles cycle = 0; cycle < 9000; cycle += 3000) {  // time passes at what is reported
+      probe->spent(CycleCause::mono, cycle, cycle + 3000, -1);
+      reporter.wait_until(cycle + 3001);
+    }
+    load(0, 90, 9100);
+    reporter.wait_until(9100);
   });
   probe->finish();
-  EXPECT_EQ(probe->late_changes(), 4u);
-  EXPECT_EQ(changes(VcdReader(file()), "pio.loading"), (List{{0, 0}, {100'000, 1}, {120'000, 0}}));
+  EXPECT_GT(probe->late_changes(), 0u);
+  const List loading = changes(vcd(), "pio.loading");
+  ASSERT_EQ(loading.size(), 3u);
+  EXPECT_GT(loading[1].first, 90'000u);
+  EXPECT_EQ(loading[2], (List::value_type{9'100'000, 0}));
+}
+
+TEST_F(WaveProbe, BlocksAreNamedByWhatTheFirmwareSays) {
+  make_probe();
+  const char* const rays = "ray bin";
+  const char* const paths = "path bin";
+  simulate([&](Reporter& reporter) {
+    const auto compute = [&](const cn::Label& label, Cycles start, Cycles finish) {
+      probe->kernel_details({nullptr, nullptr, label});
+      probe->ran_kernel("kernel", start, finish, 8);
+    };
+    compute({rays, 3}, 10, 20);
+    compute({rays, 3}, 25, 30);
+    compute({rays, 4}, 30, 40);
+    compute({paths, 4}, 40, 50);
+    compute({}, 50, 60);
+    model::PioEvent event;
+    event.label = {rays, 5};
+    event.started = 12;
+    probe->started(event);
+    event.finished = 38;
+    probe->finished(event);
+    probe->filled(3, 96, 20);
+    probe->filled(4, 50, 30);
+    probe->filled(3, 90, 50);
+    reporter.wait_until(60);
+  });
+  probe->finish();
+  const VcdReader vcd = this->vcd();
+  EXPECT_EQ(probe->bin_names(), (std::vector<std::string>{rays, paths}));
+  EXPECT_EQ(changes(vcd, "bins.compute_bin"), (List{{0, 0}, {10'000, 1}, {40'000, 2}, {50'000, 0}}));
+  EXPECT_EQ(changes(vcd, "bins.compute_block"),
+            (List{{0, model::kNoBlock}, {10'000, 3}, {30'000, 4}, {50'000, model::kNoBlock}}));
+  EXPECT_EQ(changes(vcd, "bins.load_block"), (List{{0, model::kNoBlock}, {12'000, 5}}));
+  EXPECT_EQ(changes(vcd, "bins.fill"), (List{{0, 0}, {20'000, 96}, {30'000, 146}, {50'000, 140}}));
+}
+
+TEST_F(WaveProbe, MemoryPortsAndBanksShowWhoUsesThem) {
+  make_probe();
+  simulate([&](Reporter& reporter) {
+    probe->passed(model::Initiator::pio, true, 10, 14);
+    probe->passed(model::Initiator::host, true, 14, 15);
+    probe->passed(model::Initiator::control, false, 12, 20);
+    probe->accessed(true, 20, 30);
+    probe->moved_data(true, 20, 22);
+    probe->moved_data(true, 25, 30);
+    probe->commanded(1, model::DdrCommand::activate, 77, 5);
+    probe->commanded(1, model::DdrCommand::write, 77, 15);
+    probe->commanded(0, model::DdrCommand::write, 3, 8);
+    probe->commanded(-1, model::DdrCommand::refresh, 0, 40);
+    probe->began_transfer(true, 64, 2);
+    probe->ended_transfer(true, 64, 2, 9);
+    reporter.wait_until(60);
+  });
+  probe->finish();
+  const VcdReader vcd = this->vcd();
+  EXPECT_EQ(changes(vcd, "clear_connect.to_ddr"), (List{{0, 0}, {10'000, 1}, {14'000, 3}, {15'000, 0}}));
+  EXPECT_EQ(changes(vcd, "clear_connect.from_ddr"), (List{{0, 0}, {12'000, 2}, {20'000, 0}}));
+  EXPECT_EQ(changes(vcd, "ddr.bus"), (List{{0, 0}, {20'000, 2}, {30'000, 0}}));
+  EXPECT_EQ(changes(vcd, "ddr.data"), (List{{0, 0}, {20'000, 2}, {22'000, 0}, {25'000, 2}, {30'000, 0}}));
+  EXPECT_EQ(changes(vcd, "ddr.bank_1.command"), (List{{0, 0}, {5'000, 1}, {15'000, 3}, {40'000, 4}}));
+  EXPECT_EQ(changes(vcd, "ddr.bank_1.row"), (List{{0, 0}, {5'000, 77}}));
+  EXPECT_EQ(changes(vcd, "ddr.bank_0.command"), (List{{0, 0}, {8'000, 3}, {40'000, 4}}));
+  EXPECT_EQ(changes(vcd, "host_link.state"), (List{{0, 0}, {2'000, 1}, {9'000, 0}}));
+}
+
+TEST_F(WaveProbe, SinglePesShowTheirPart) {
+  make_probe();
+  cn::LaneMask some;
+  some.set(2, true);
+  some.set(5, true);
+  simulate([&](Reporter& reporter) {
+    probe->kernel_details({&some, nullptr, {}});
+    probe->ran_kernel("kernel", 10, 20, 2);
+    model::PioEvent load;
+    load.enabled = &some;
+    load.started = 12;
+    probe->started(load);
+    load.finished = 30;
+    probe->finished(load);
+    model::PioEvent save;
+    save.direction = cn::Direction::poly_to_mono;
+    save.started = 15;
+    probe->started(save);
+    save.finished = 25;
+    probe->finished(save);
+    reporter.wait_until(40);
+  });
+  probe->finish();
+  const VcdReader vcd = this->vcd();
+  EXPECT_EQ(changes(vcd, "pe_array.pe_5.enabled"), (List{{0, 0}, {10'000, 1}, {20'000, 0}}));
+  EXPECT_EQ(changes(vcd, "pe_array.pe_4.enabled"), (List{{0, 0}}));
+  EXPECT_EQ(changes(vcd, "pe_array.pe_2.transfer"),
+            (List{{0, 0}, {12'000, 1}, {15'000, 3}, {25'000, 1}, {30'000, 0}}));
+  EXPECT_EQ(changes(vcd, "pe_array.pe_4.transfer"), (List{{0, 0}, {15'000, 2}, {25'000, 0}}));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // The file of a WaveProbe: its window, its ends, and what can go wrong with it.
 
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
+#include <algorithm>
 
 #include "tests/support/wave_probe_fixture.hpp"
 
@@ -44,10 +42,9 @@ TEST_F(WaveProbeWindow, WindowCutsWithoutLosingWhatHoldsAtItsEnds) {
     probe->spent(CycleCause::poly, 200, 300, -1);
     probe->ran_kernel("after", 200, 300, 64);
     reporter.wait_until(300);
-    EXPECT_GT(std::filesystem::file_size(file()), 1000u) << "the file is complete once the window is over";
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(vcd.first_time(), 100'000u);
   EXPECT_EQ(vcd.last_time(), 200'000u);
   EXPECT_EQ(changes(vcd, "control.state"), (List{{100'000, state(CycleCause::poly)},
@@ -70,7 +67,7 @@ TEST_F(WaveProbeWindow, OneStateThroughoutTheWindowIsStillRecorded) {
     reporter.wait_until(5000);
   });
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(vcd.time_at_value("control.state", state(CycleCause::poly)), 1'000'000u);
 }
 
@@ -82,55 +79,115 @@ TEST_F(WaveProbeWindow, WindowsEndsDoNotKeepASimulationRunning) {
   });
   EXPECT_EQ(sc_core::sc_time_stamp(), clock.time_at(80));
   probe->finish();
-  const VcdReader vcd(file());
+  const VcdReader vcd = this->vcd();
   EXPECT_EQ(vcd.first_time(), 50'000u);
   EXPECT_EQ(vcd.last_time(), 80'000u);
   EXPECT_EQ(vcd.time_at_value("control.state", state(CycleCause::mono)), 30'000u);
 }
 
-TEST_F(WaveProbeWindow, NothingIsPrinted) {
-  make_probe();
-  const auto handler_of_tests = sc_core::sc_report_handler::set_handler(nullptr);  // the one of real runs
-  testing::internal::CaptureStdout();
+TEST_F(WaveProbeWindow, SeveralWindowsLeaveGapsOfTheUnknown) {
+  model::WaveConfig config;
+  config.windows = {{20, 30}, {60, 80}, {70, 90}};  // the last two overlap
+  make_probe(config);
   simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(80);
+    for (Cycles cycle = 0; cycle < 200; cycle += 10) {
+      probe->spent(CycleCause::mono, cycle, cycle + 5, -1);
+      probe->spent(CycleCause::poly, cycle + 5, cycle + 10, -1);
+    }
+    reporter.wait_until(200);
   });
   probe->finish();
-  const std::string printed = testing::internal::GetCapturedStdout();
-  sc_core::sc_report_handler::set_handler(handler_of_tests);
-  EXPECT_EQ(printed, "");
+  const VcdReader vcd = this->vcd();
+  const std::uint64_t unknown = VcdReader::kUnknown;
+  EXPECT_EQ(changes(vcd, "control.state"), (List{{20'000, state(CycleCause::mono)},
+                                                 {25'000, state(CycleCause::poly)},
+                                                 {30'000, unknown},
+                                                 {60'000, state(CycleCause::mono)},
+                                                 {65'000, state(CycleCause::poly)},
+                                                 {70'000, state(CycleCause::mono)},
+                                                 {75'000, state(CycleCause::poly)},
+                                                 {80'000, state(CycleCause::mono)},
+                                                 {85'000, state(CycleCause::poly)}}));
+  EXPECT_EQ(vcd.last_time(), 90'000u);
+  EXPECT_EQ(vcd.time_at_value("control.state", state(CycleCause::mono)), 20'000u);
 }
 
-TEST_F(WaveProbeWindow, NamedPipeCarriesTheWholeFile) {
-  const std::string copy = (directory / "copy.vcd").string();
-  ASSERT_EQ(std::system(("mkfifo " + file() + " && cat " + file() + " > " + copy + " &").c_str()), 0);
-  while (!std::filesystem::is_fifo(file())) usleep(1000);
-  make_probe();
+TEST_F(WaveProbeWindow, WindowsOfBlocksBeginWithTheirKernels) {
+  model::WaveConfig config;
+  config.blocks = {{2, 1}, {4, model::BlockWindow{}.count}};
+  make_probe(config);
   simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(100);
+    for (int block = 0; block < 5; ++block) {
+      const Cycles start = 100 * Cycles(block) + 10;
+      probe->kernel_details({nullptr, nullptr, {"bin", block}});
+      probe->ran_kernel("first", start, start + 20, 8);
+      probe->kernel_details({nullptr, nullptr, {"bin", block}});
+      probe->ran_kernel("second", start + 20, start + 50, 8);
+      if (block % 2 == 1) reporter.wait_until(start + 50);
+    }
+    reporter.wait_until(500);
   });
   probe->finish();
-  std::string tail;
-  for (int i = 0; i < 1000 && tail.find("#100000") == std::string::npos; ++i, usleep(1000)) {
-    std::ostringstream text;
-    text << std::ifstream(copy).rdbuf();
-    tail = text.str();
-  }
-  EXPECT_EQ(VcdReader(copy).time_at_value("control.state", state(CycleCause::mono)), 80'000u);
+  const VcdReader vcd = this->vcd();
+  EXPECT_EQ(vcd.first_time(), 110'000u);
+  EXPECT_EQ(vcd.last_time(), 500'000u);
+  EXPECT_EQ(changes(vcd, "bins.compute_block"),
+            (List{{110'000, 1}, {210'000, VcdReader::kUnknown}, {310'000, 3}, {410'000, 4}}));
 }
 
-TEST_F(WaveProbeWindow, FileThatCannotBeCreatedIsRefusedBeforeTheRun) {
-  const auto make = [&](const std::string& name) {
-    return [this, name] {
-      model::WaveProbe("probe", model::WaveConfig{name}, clock, [] { return model::MemoryCounters{}; });
+TEST_F(WaveProbeWindow, BlockThatIsNeverReachedIsReported) {
+  model::WaveConfig config;
+  config.blocks = {{7, 1}};
+  make_probe(config);
+  simulate([&](Reporter& reporter) {
+    probe->kernel_details({nullptr, nullptr, {"bin", 0}});
+    probe->ran_kernel("kernel", 0, 20, 8);
+    reporter.wait_until(20);
+  });
+  expect_message([&] { probe->finish(); }, "from block 7 on");
+}
+
+TEST_F(WaveProbeWindow, EmptySelectionsAreRefused) {
+  const auto make = [&](const model::WaveSelection& selection) {
+    return [this, selection] {
+      model::WaveConfig config;
+      config.selection = selection;
+      model::check_waves(config, chip);
     };
   };
-  expect_message(make((directory / "missing" / "a.vcd").string()), "No such file or directory");
-  std::filesystem::create_directory(directory / "taken.vcd");
-  expect_message(make((directory / "taken.vcd").string()), "Is a directory");
-  expect_message(make((directory / "a.fst").string()), "ends in .vcd");
+  expect_message(make({{"pio.*", "nothing"}, {}, {}}), "'nothing'");
+  expect_message(make({{}, {}, std::vector<int>{8}}), "PE 8");
+  expect_message(make({{"ddr.data"}, model::WaveLevel::overview, {}}), "no signal");
+}
+
+TEST_F(WaveProbeWindow, LevelsPatternsAndPesSelect) {
+  const auto paths = [&](const model::WaveSelection& selection) {
+    std::vector<std::string> list;
+    for (const auto& signal : model::select_waves(chip, selection)) list.push_back(signal.path);
+    return list;
+  };
+  using Paths = std::vector<std::string>;
+  EXPECT_EQ(paths({{"pe_array.pe_*.enabled"}, {}, std::vector<int>{1, 7}}),
+            (Paths{"pe_array.pe_1.enabled", "pe_array.pe_7.enabled"}));
+  EXPECT_EQ(paths({{"pio.*ing"}, {}, {}}), (Paths{"pio.loading", "pio.saving"}));
+  EXPECT_EQ(paths({{"ddr.*"}, model::WaveLevel::units, {}}), (Paths{"ddr.bus"}));
+  const Paths units = paths({});
+  for (const auto& signal : model::select_waves(chip, {}))
+    EXPECT_LE(signal.info->level, model::WaveLevel::units);
+  EXPECT_EQ(paths({{}, {}, std::vector<int>{3}}).size(), units.size() + 2) << "two signals a PE";
+  EXPECT_LT(paths({{}, model::WaveLevel::overview, {}}).size(), units.size());
+  EXPECT_EQ(paths({{}, model::WaveLevel::detail, {}}).size(), model::wave_instances(chip).size());
+}
+
+TEST_F(WaveProbeWindow, NumbersInNamesAreAsWideAsTheLast) {
+  chip.chip.pes = 96;
+  std::vector<std::string> paths;
+  for (const auto& signal : model::wave_instances(chip))
+    if (signal.info->id == model::WaveSignal::pe_enabled) paths.push_back(signal.path);
+  ASSERT_EQ(paths.size(), 96u);
+  EXPECT_EQ(paths.front(), "pe_array.pe_00.enabled");
+  EXPECT_EQ(paths.back(), "pe_array.pe_95.enabled");
+  EXPECT_TRUE(std::is_sorted(paths.begin(), paths.end()));
 }
 
 TEST_F(WaveProbeWindow, EmptyWindowIsRefused) {
@@ -155,17 +212,6 @@ TEST_F(WaveProbeWindow, RunThatEndsWhereTheWindowBeginsIsReported) {
     sc_core::sc_stop();
   });
   expect_message([&] { probe->finish(); }, "which ended at cycle 80");
-}
-
-TEST_F(WaveProbeWindow, FullDiskIsReported) {
-  // SystemC does not look at the result of its writes; a file cut short must be noticed all the same.
-  make_probe(0, 50);
-  simulate([&](Reporter& reporter) {
-    probe->spent(CycleCause::mono, 0, 80, -1);
-    reporter.wait_until(80);
-    std::filesystem::resize_file(file(), 1024);
-  });
-  expect_message([&] { probe->finish(); }, "not complete");
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <set>
 #include <sstream>
 
+#include "tests/support/test_chip.hpp"
+
 namespace {
 
 using model::ViewOptions;
@@ -15,7 +17,8 @@ using model::WaveSignal;
 ViewOptions options() {
   ViewOptions view;
   view.view_file = "run.gtkw";
-  view.vcd_file = "run.vcd";
+  view.wave_file = "run.vcd";
+  view.signals = model::wave_instances(test_support::test_chip());
   view.first_picoseconds = 5'000'000;
   view.span_picoseconds = 1'000'000;
   view.filter_files = {{WaveSignal::control_state, "run.state.txt"},
@@ -35,7 +38,7 @@ std::vector<std::string> lines_of(const ViewOptions& view) {
 std::vector<std::string> signals_of(const std::vector<std::string>& lines) {
   std::vector<std::string> names;
   for (const std::string& line : lines)
-    if (line.rfind("SystemC.", 0) == 0) names.push_back(line);
+    if (line.rfind("+{", 0) == 0) names.push_back(line.substr(line.find("} ") + 2));
   return names;
 }
 
@@ -56,19 +59,9 @@ TEST(WaveSignals, TableIsInTheOrderOfItsIdsAndNamesAreUnique) {
 
 TEST(WaveSignals, NamedValuesFitTheirSignals) {
   for (const auto& signal : model::wave_signal_table())
-    for (const auto& value : signal.value_names)
+    for (const auto& value : signal.fixed_names)
       EXPECT_TRUE(signal.width == 64 || value.value >> signal.width == 0)
           << signal.path() << " " << value.name;
-}
-
-TEST(WaveSignals, KernelsAreNumberedFromOne) {
-  const auto& table = model::wave_signal_table();
-  const auto names =
-      model::wave_value_names(table[std::size_t(WaveSignal::control_kernel)], {"intersect", "shade"});
-  ASSERT_EQ(names.size(), 3u);
-  EXPECT_EQ(names[0].name, "none");
-  EXPECT_EQ(names[2].value, 2u);
-  EXPECT_EQ(names[2].name, "shade");
 }
 
 TEST(WaveSignals, TableOfTheReadmeIsTheGeneratedOne) {
@@ -76,17 +69,20 @@ TEST(WaveSignals, TableOfTheReadmeIsTheGeneratedOne) {
   std::ifstream in(file);
   ASSERT_TRUE(in) << file;
   std::string table;
-  for (std::string line; std::getline(in, line);)
-    if (!line.empty() && line[0] == '|') table += line + "\n";
+  bool in_section = false;  // of signals: there are other tables
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("## ", 0) == 0) in_section = line == "## Signals";
+    if (in_section && !line.empty() && line[0] == '|') table += line + "\n";
+  }
   EXPECT_EQ(table, model::wave_signal_markdown());
 }
 
 TEST(WaveView, ShowsEverySignalOnceUnderItsNameInTheFile) {
   const std::vector<std::string> names = signals_of(lines_of(options()));
   std::vector<std::string> expected;
-  for (const auto& signal : model::wave_signal_table())
-    expected.push_back("SystemC." + signal.path() +
-                       (signal.width == 1 ? "" : "[" + std::to_string(signal.width - 1) + ":0]"));
+  for (const auto& signal : options().signals)
+    expected.push_back("csx600." + signal.path +
+                       (signal.info->width == 1 ? "" : "[" + std::to_string(signal.info->width - 1) + ":0]"));
   EXPECT_EQ(names, expected);
 }
 
@@ -105,17 +101,17 @@ TEST(WaveView, GroupsAreClosedInTheOrderTheyWereOpened) {
     }
   }
   EXPECT_EQ(open, "");
-  EXPECT_EQ(opened, (std::vector<std::string>{"-control unit", "-PE array", "-programmed I/O", "-DDR",
-                                              "-ClearConnect"}));
+  EXPECT_EQ(opened, (std::vector<std::string>{"-bins", "-control unit", "-PE array", "-programmed I/O",
+                                              "-ClearConnect", "-DDR", "-host link"}));
 }
 
 TEST(WaveView, FiltersStandBeforeTheirSignals) {
   const std::vector<std::string> lines = lines_of(options());
-  const auto kernel = std::find(lines.begin(), lines.end(), "SystemC.control.kernel[15:0]");
+  const auto kernel = std::find(lines.begin(), lines.end(), "+{kernel} csx600.control.kernel[15:0]");
   ASSERT_NE(kernel, lines.end());
   EXPECT_EQ(*(kernel - 1), "^2 run.kernels.txt");
   EXPECT_EQ(*(kernel - 3), "@2024") << "right-justified decimal through a file filter";
-  const auto semaphore = std::find(lines.begin(), lines.end(), "SystemC.control.semaphore[7:0]");
+  const auto semaphore = std::find(lines.begin(), lines.end(), "+{semaphore} csx600.control.semaphore[7:0]");
   ASSERT_NE(semaphore, lines.end());
   EXPECT_EQ(*(semaphore - 2), "@24") << "no filter was given";
 }
@@ -138,7 +134,7 @@ TEST(WaveView, NamesNoDirectory) {
     EXPECT_TRUE(line.find('/') == std::string::npos || line == "-programmed I/O") << line;
   for (const char* const name : {"/tmp/run.vcd", ""}) {
     ViewOptions view = options();
-    view.vcd_file = name;
+    view.wave_file = name;
     EXPECT_THROW(lines_of(view), std::invalid_argument) << name;
     view = options();
     view.filter_files[0].second = name;

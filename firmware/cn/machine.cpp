@@ -36,13 +36,13 @@ Machine::Machine(int num_pes, int poly_bytes_per_pe) : poly_memory_(num_pes, pol
 
 void Machine::async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source,
                              const LaneMask& enabled) {
-  const Transfer transfer{Direction::mono_to_poly, destination, source, enabled, done};
+  const Transfer transfer{Direction::mono_to_poly, destination, source, enabled, done, label_};
   begin_transfer(transfer);
 }
 
 void Machine::async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source,
                              const LaneMask& enabled) {
-  const Transfer transfer{Direction::poly_to_mono, source, destination, enabled, done};
+  const Transfer transfer{Direction::poly_to_mono, source, destination, enabled, done, label_};
   begin_transfer(transfer);
 }
 

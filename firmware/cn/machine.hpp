@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/cn/kernel.hpp"
+#include "firmware/cn/label.hpp"
 #include "firmware/cn/transfer.hpp"
 
 namespace cn {
@@ -44,7 +45,9 @@ class Machine {
     if (access_observer() != nullptr) access_observer()->kernel_begins(kernel.name);
     kernel.run(arguments, poly_memory_, enabled, issued_);
     if (access_observer() != nullptr) access_observer()->kernel_ends();
+    kernel_lanes_ = &enabled;
     retire(kernel.name, issued_);
+    kernel_lanes_ = nullptr;
   }
 
   /// Asynchronous copies between mono and poly memory; the PE array goes on computing. Only enabled PEs take
@@ -111,6 +114,11 @@ class Machine {
     write_mono_bytes(to.address, &value, sizeof(T));
   }
 
+  /// What follows, kernels and requests, belongs to `label`.
+  void set_label(const Label& label) { label_ = label; }
+  /// For observers: from now on these PEs' slots of a block of the bins hold work.
+  virtual void report_fill(int /*block*/, const LaneMask& /*slots*/) {}
+
   /// From here on nothing costs time, until timed(true): for work that a timed program leaves to others.
   /// It sees the data of every transfer started before it, waited for or not, and does not use up their
   /// signals.
@@ -122,6 +130,9 @@ class Machine {
  protected:
   /// For implementations, which tell it of waits, signals and timed(); null when nobody looks.
   AccessObserver* access_observer() const { return poly_memory_.observer(); }
+  const Label& label() const { return label_; }
+  /// Enabled for the kernel that retires; null for what all PEs do.
+  const LaneMask* kernel_lanes() const { return kernel_lanes_; }
 
   virtual void retire(const char* kernel, const IssueTree& issued) = 0;
   virtual void start_transfer(const Transfer& transfer) = 0;
@@ -140,6 +151,8 @@ class Machine {
 
   PolyMemory poly_memory_;
   IssueTree issued_;
+  Label label_;
+  const LaneMask* kernel_lanes_ = nullptr;
   std::vector<std::string> semaphore_names_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "firmware/cn/label.hpp"
 #include "firmware/cn/lane_mask.hpp"
 #include "firmware/cn/mono_memory.hpp"
 #include "firmware/cn/poly_memory.hpp"
@@ -23,6 +24,7 @@ struct Transfer {
   MonoPlaces mono;
   LaneMask enabled;
   Semaphore done;
+  Label label{};
 };
 
 /// Every bit that is set in the place of any PE, enabled or not. At least as large as each place and a

@@ -100,8 +100,10 @@ void PathTracer::fill_bins() {
   for (int block = 0; block < config_.bin_blocks && path_stage_.camera_rays().remaining() > 0; ++block) {
     const std::uint64_t step = next_step_++;
     saves_.wait(step);
+    machine_.set_label({path_stage_.bin(), block});
     path_stage_.fill(step, block);
     path_stage_.save(step, block);
+    report_fill(block);
     live_blocks_.push_back(block);
     plan(ray_stage_, block);
   }
@@ -131,9 +133,18 @@ void PathTracer::issue_loads() {
     Step step = bin_steps_.front();
     bin_steps_.pop_front();
     step.number = next_step_++;
+    label(step);
     step.stage->load(step.number, step.block);
     loading_.push_back(step);
   }
+}
+
+void PathTracer::label(const Step& step) {
+  machine_.set_label({step.stage->bin(), step.block});
+}
+
+void PathTracer::report_fill(int block) {
+  machine_.report_fill(block, bins_.blocks[std::size_t(block)].live);
 }
 
 void PathTracer::run_bin_step() {
@@ -141,6 +152,7 @@ void PathTracer::run_bin_step() {
   loading_.pop_front();
   loads_.wait(step.number);
   saves_.wait(step.number);
+  label(step);
   step.stage->process(step.number, step.block);
   step.stage->save(step.number, step.block);
   if (step.stage == &path_stage_) after_path_step(step);
@@ -149,6 +161,7 @@ void PathTracer::run_bin_step() {
 void PathTracer::after_path_step(const Step& step) {
   if (radiance_is_timed()) announce_results();
   last_path_step_ = step.number;
+  report_fill(step.block);
   if (bins_.blocks[std::size_t(step.block)].live.any()) {
     live_blocks_.push_back(step.block);
     plan(ray_stage_, step.block);
@@ -192,6 +205,7 @@ void PathTracer::issue_radiance_loads() {
     Step step = radiance_steps_.front();
     radiance_steps_.pop_front();
     step.number = next_radiance_step_++;
+    label(step);
     step.stage->load(step.number, step.block);
     radiance_loading_.push_back(step);
   }
@@ -202,6 +216,7 @@ void PathTracer::run_radiance_step() {
   radiance_loading_.pop_front();
   radiance_loads_.wait(step.number);
   radiance_saves_.wait(step.number);
+  label(step);
   step.stage->process(step.number, step.block);
   step.stage->save(step.number, step.block);
   if (step.stage == &radiance_stage_.list()) {

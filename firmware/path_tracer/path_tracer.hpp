@@ -49,6 +49,8 @@ class PathTracer {
   void plan_radiance(Stage& stage, int block) { radiance_steps_.push_back({&stage, block, 0}); }
   bool is_ray_step(const Step& step) const { return step.stage == &ray_stage_; }
   bool can_load(const Step& step) const;
+  void label(const Step& step);
+  void report_fill(int block);
   bool radiance_is_timed() const { return config_.program == Program::full; }
   bool radiance_is_left() const {
     return !radiance_steps_.empty() || !radiance_loading_.empty() || list_steps_left_ > 0;

@@ -68,6 +68,8 @@ class Stage {
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
+  /// Its name, for observers.
+  virtual const char* bin() const = 0;
   virtual void load(std::uint64_t step, int block) = 0;
   virtual void process(std::uint64_t step, int block) = 0;
   virtual void save(std::uint64_t step, int block) = 0;

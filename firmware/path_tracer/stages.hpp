@@ -15,6 +15,7 @@ class RayStage : public Stage {
   static constexpr int kLoadBytes = sizeof(RayRecord);
   static constexpr int kSaveBytes = sizeof(HitRecord);
 
+  const char* bin() const override { return "ray bin"; }
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
@@ -28,6 +29,7 @@ class IntersectionStage : public Stage {
   static int load_bytes(Program program);
   static int save_bytes(Program program);
 
+  const char* bin() const override { return "intersection bin"; }
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
@@ -82,6 +84,7 @@ class PathStage : public Stage {
   static constexpr int kSaveBytes = sizeof(VertexRecord) + sizeof(PathRecord) + sizeof(RayRecord) +
                                     sizeof(FinishedRecord) + 2 * sizeof(MonoAddress);
 
+  const char* bin() const override { return "path bin"; }
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
@@ -161,6 +164,7 @@ class RadianceStage {
   class ListStage : public Stage {
    public:
     ListStage(const StageContext& context, ListBlocks& blocks) : Stage(context), blocks_(blocks) {}
+    const char* bin() const override { return "finished paths"; }
     void load(std::uint64_t step, int block) override;
     void process(std::uint64_t step, int block) override;
     void save(std::uint64_t, int) override {}
@@ -173,6 +177,7 @@ class RadianceStage {
   class FoldStage : public Stage {
    public:
     FoldStage(const StageContext& context, ListBlocks& blocks);
+    const char* bin() const override { return "radiance"; }
     void load(std::uint64_t step, int block) override;
     void process(std::uint64_t step, int block) override;
     void save(std::uint64_t step, int block) override;

@@ -113,11 +113,11 @@ std::string run_variant(const Scene& scene, const Variant& variant) {
   std::optional<TemporaryDirectory> waves;
   if (variant.traced) {
     waves.emplace();
-    options.waves = WaveOptions{};
-    options.waves->vcd = waves->path() / "waves.vcd";
+    options.observation.waves = WaveOptions{waves->path() / "waves.vcd", {}};
   }
   const RenderResult result =
       variant.native ? render_natively(sized, options, progress) : render_on_chip(sized, options, progress);
+  require_observed(result);
   return Json{{"cpu_seconds", result.cpu_seconds},
               {"segments", result.counts.segments},
               {"simulated_seconds", result.chip ? result.chip->seconds() : 0.0},

@@ -13,5 +13,6 @@ void add_params_command(CLI::App& app);
 void add_scene_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
+void add_waves_command(CLI::App& app);
 
 }  // namespace testbench

@@ -6,9 +6,11 @@
 #include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/wave_options.hpp"
 #include "testbench/error.hpp"
 #include "testbench/image_file.hpp"
 #include "testbench/interrupt.hpp"
+#include "testbench/observation.hpp"
 #include "testbench/progress_bar.hpp"
 #include "testbench/render_report.hpp"
 #include "testbench/scene/scene_file.hpp"
@@ -30,8 +32,7 @@ struct RenderCommand {
   std::string exr;
   std::string png;
   std::string statistics;
-  std::string vcd;
-  std::string vcd_cycles;
+  ObservationOption observation;
 
   void run();
 
@@ -41,30 +42,10 @@ struct RenderCommand {
   void write_outputs(const RenderRequest& request, const RenderResult& result) const;
 };
 
-/// "first:last", either may be missing.
-void parse_cycles(const std::string& text, WaveOptions& waves) {
-  const std::size_t colon = text.find(':');
-  const auto number = [&](const std::string& part, std::uint64_t missing) {
-    if (part.empty()) return missing;
-    std::size_t used = 0;
-    std::uint64_t value = 0;
-    try {
-      value = std::stoull(part, &used);
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (used != part.size() || part[0] == '-')
-      throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
-    return value;
-  };
-  if (colon == std::string::npos)
-    throw InputError("--vcd-cycles: found '" + text + "', allowed is FIRST:LAST");
-  waves.first_cycle = number(text.substr(0, colon), 0);
-  waves.last_cycle = number(text.substr(colon + 1), waves.last_cycle);
-}
-
 void RenderCommand::require_writable_outputs() const {
-  require_files_of_their_own({{"--exr", exr}, {"--png", png}, {"--stats", statistics}, {"--vcd", vcd}});
+  std::vector<OutputOption> outputs = observation.outputs();
+  outputs.insert(outputs.end(), {{"--exr", exr}, {"--png", png}, {"--stats", statistics}});
+  require_files_of_their_own(outputs);
   for (const std::string& path : {exr, png, statistics})
     if (!path.empty()) require_writable(path);
 }
@@ -85,15 +66,11 @@ RenderRequest RenderCommand::make_request() const {
   request.options.program.cull_shadow_rays = shadow_rays == "facing";
   if (native && request.options.timing == model::TimingStyle::approximately_timed)
     throw InputError("--timing: found at with --native, a native run has no clock; allowed is lt");
-  if (!vcd.empty()) {
-    if (native) throw InputError("--vcd: a native run has no clock and so no waves; leave out --native");
-    WaveOptions waves;
-    waves.vcd = vcd;
-    if (!vcd_cycles.empty()) parse_cycles(vcd_cycles, waves);
-    request.options.waves = waves;
-  } else if (!vcd_cycles.empty()) {
-    throw InputError("--vcd-cycles: found without --vcd, allowed is together with it");
-  }
+  if (native && observation.any())
+    throw InputError(
+        "--waves, --transactions, --timeline: a native run has no clock and so nothing to show; leave out "
+        "--native");
+  request.options.observation = observation.options(request.options.chip);
   return request;
 }
 
@@ -107,7 +84,7 @@ void RenderCommand::write_outputs(const RenderRequest& request, const RenderResu
 void RenderCommand::run() {
   const RenderRequest request = make_request();
   require_writable_outputs();
-  if (request.options.waves) require_writable_waves(*request.options.waves);
+  require_writable(request.options.observation, request.options.chip);
   const Scene loaded = load_scene_for_film(scene, size);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
@@ -129,6 +106,7 @@ void RenderCommand::run() {
               native ? "native" : request.options.chip.preset.c_str());
   std::fputs(render_table(request, result).c_str(), stdout);
   if (exr.empty() && png.empty()) std::puts("  no image written: name one with --exr or --png");
+  require_observed(result);
 }
 
 void add_firmware_options(CLI::App& command, RenderCommand& state) {
@@ -173,8 +151,7 @@ void add_render_command(CLI::App& app) {
   command.add_option("--exr", state->exr, "Write the image as OpenEXR");
   command.add_option("--png", state->png, "Write the image as PNG");
   command.add_option("--stats,--json", state->statistics, "Write statistics as JSON");
-  command.add_option("--vcd", state->vcd, "Write waves (.vcd) and a GTKWave view beside them (.gtkw)");
-  command.add_option("--vcd-cycles", state->vcd_cycles, "Cycles to show as waves, FIRST:LAST (default: all)");
+  state->observation.add_to(command);
   command.callback([state] { state->run(); });
 }
 

@@ -22,19 +22,28 @@ class VcdReader {
     std::vector<Change> changes;  ///< the first is the initial value
   };
 
-  explicit VcdReader(const std::string& file) {
-    std::ifstream in(file);
-    if (!in) throw std::runtime_error("cannot read " + file);
+  /// Of a signal while nothing is recorded.
+  static constexpr std::uint64_t kUnknown = ~std::uint64_t{0};
+
+  explicit VcdReader(std::istream& in) {
     read_definitions(in);
     read_changes(in);
+  }
+  static VcdReader of_file(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) throw std::runtime_error("cannot read " + file);
+    return VcdReader(in);
   }
 
   const std::string& timescale() const { return timescale_; }
   std::uint64_t first_time() const { return first_time_; }
   std::uint64_t last_time() const { return last_time_; }
-  /// By dotted name, with SystemC's outermost scope.
+  /// By dotted name, with the outermost scope.
   const std::map<std::string, Signal>& signals() const { return signals_; }
-  const Signal& signal(const std::string& path) const { return signals_.at("SystemC." + path); }
+  const Signal& signal(const std::string& path) const {
+    const auto found = signals_.find(path);
+    return found != signals_.end() ? found->second : signals_.at("csx600." + path);
+  }
 
   std::uint64_t value_at(const std::string& path, std::uint64_t time) const {
     const std::vector<Change>& changes = signal(path).changes;
@@ -102,7 +111,7 @@ class VcdReader {
         std::string code;
         in >> code;
         add(code, word.substr(1));
-      } else if (word[0] == '0' || word[0] == '1') {
+      } else if (word[0] == '0' || word[0] == '1' || word[0] == 'x') {
         add(word.substr(1), word.substr(0, 1));
       } else if (word[0] != '$') {
         throw std::runtime_error("unknown: " + word);
@@ -112,6 +121,10 @@ class VcdReader {
   }
 
   void add(const std::string& code, const std::string& bits) {
+    if (bits.find_first_not_of('x') == std::string::npos) {
+      by_code_.at(code)->changes.push_back({last_time_, kUnknown});
+      return;
+    }
     std::size_t used = 0;
     const std::uint64_t value = std::stoull(bits, &used, 2);
     if (used != bits.size()) throw std::runtime_error("not a number: " + bits);

@@ -1,16 +1,15 @@
 #pragma once
 
-#include <unistd.h>
-
-#include <filesystem>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "model/wave_probe.hpp"
 #include "tests/support/systemc_fixture.hpp"
+#include "tests/support/test_chip.hpp"
 #include "tests/support/vcd_reader.hpp"
 
 namespace test_support {
@@ -37,22 +36,24 @@ class Reporter : public sc_core::sc_module {
 
 class WaveProbeFixture : public test_support::SystemCFixture {
  protected:
-  WaveProbeFixture() {
-    directory = std::filesystem::temp_directory_path() / ("wave_probe_test." + std::to_string(getpid()));
-    std::filesystem::create_directory(directory);
-  }
-  ~WaveProbeFixture() override {
-    probe.reset();
-    std::filesystem::remove_all(directory);
-  }
-
-  std::string file() const { return (directory / "test.vcd").string(); }
-
-  void make_probe(model::Cycles first = 0, model::Cycles last = model::WaveConfig{}.last_cycle,
+  /// Of one nanosecond a cycle, everything shown.
+  void make_probe(model::Cycles first = 0, model::Cycles last = model::CycleWindow{}.last,
                   double clock_hz = 1e9) {
+    model::WaveConfig config;
+    config.windows = {{first, last}};
+    make_probe(config, clock_hz);
+  }
+  void make_probe(model::WaveConfig config, double clock_hz = 1e9) {
+    chip.chip.clock_hz = clock_hz;
     clock = model::ClockDomain(clock_hz);
-    probe = std::make_unique<model::WaveProbe>("probe", model::WaveConfig{file(), first, last}, clock,
-                                               [this] { return memory; });
+    if (!config.selection.level) config.selection.level = model::WaveLevel::detail;
+    probe = std::make_unique<model::WaveProbe>(
+        "probe", config, chip, [this](std::string_view text) { file << text; }, [this] { return memory; });
+  }
+  /// What was written; after finish().
+  VcdReader vcd() const {
+    std::istringstream in(file.str());
+    return VcdReader(in);
   }
 
   void simulate(Reporter::Body body) {
@@ -79,7 +80,8 @@ class WaveProbeFixture : public test_support::SystemCFixture {
     transfer(id, cn::Direction::poly_to_mono, started, finished);
   }
 
-  std::filesystem::path directory;
+  std::ostringstream file;
+  model::ChipConfig chip = test_chip();
   model::ClockDomain clock{1e9};
   model::MemoryCounters memory;
   std::unique_ptr<model::WaveProbe> probe;

@@ -142,8 +142,8 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
   });
 }
 
-RenderResult render_natively(const Scene& scene, const RenderOptions& options,
-                             const RenderProgress& progress, TimingStream* record) {
+RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress,
+                             TimingStream* record) {
   return with_input_errors([&] {
     Run run(scene, options, progress);
     const path_tracer::Layout& layout = run.image().layout;

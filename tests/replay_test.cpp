@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "model/chip_parameters.hpp"
@@ -80,6 +80,85 @@ TEST_F(Replay, EqualsTheFullRunWherePathsAreFlushed) {
   const Recording recording = testbench::record_render(scene, options);
   ASSERT_GT(recording.result.counts.folds, 0u);
   EXPECT_EQ(replayed(recording, options), in_full(scene, options));
+}
+
+/// Another value than the default, as far from it as the run bears.
+model::ParameterValue other_value(const model::ParameterInfo& parameter) {
+  if (parameter.key == "chip.clock_hz") return 500e6;
+  if (parameter.key == "ddr.size_bytes") return std::int64_t{64} << 20;
+  if (parameter.key == "ddr.refresh_cycles") return std::int64_t{700};
+  if (parameter.key == "ddr.page_hit_cycles") return std::int64_t{7};
+  if (parameter.key == "ddr.banks") return std::int64_t{2};
+  if (parameter.key == "ddr.page_bytes") return std::int64_t{2048};
+  if (parameter.key == "clear_connect.bytes_per_cycle") return std::int64_t{3};
+  if (parameter.key == "clear_connect.packet_bytes") return std::int64_t{128};
+  if (parameter.key == "control.cache_line_bytes") return std::int64_t{64};
+  if (parameter.key == "control.data_cache_bytes") return std::int64_t{256};
+  if (const auto* const range = std::get_if<model::IntegerRange>(&parameter.allowed)) {
+    const std::int64_t value = std::get<std::int64_t>(parameter.default_value);
+    const std::int64_t other = value > range->low + 2 ? range->low + 2 : 5 * value + 2;
+    return std::min(range->high, other / range->multiple_of * range->multiple_of);
+  }
+  if (std::holds_alternative<model::RealRange>(parameter.allowed))
+    return std::get<double>(parameter.default_value) * 3.7 + 1.3;
+  if (const auto* const flag = std::get_if<bool>(&parameter.default_value)) return !*flag;
+  const auto& names = std::get<model::Choice>(parameter.allowed);
+  return std::string(names[0] == std::get<std::string>(parameter.default_value) ? names[1] : names[0]);
+}
+
+/// The declaration `Effect::timing` is checked, parameter by parameter: the chip with another value makes the
+/// same image and, told by every one of its statistics, was asked the same as the recording of the default
+/// chip.
+TEST_F(Replay, EveryParameterDeclaredTimingOnlyLeavesImageAndStreamAlone) {
+  const Scene scene = small_cornell_box({8, 6});
+  const RenderOptions options = render_options(Program::full, 2);
+  const Recording recording = testbench::record_render(scene, options);
+  int parameters = 0;
+  for (const model::ParameterInfo& parameter : model::parameter_table()) {
+    if (parameter.effect != model::Effect::timing) continue;
+    SCOPED_TRACE(parameter.key);
+    RenderOptions changed = options;
+    const model::ParameterValue other = other_value(parameter);
+    ASSERT_NE(other, parameter.read(options.chip));
+    model::set_parameter_value(changed.chip, parameter.key, other, "test");
+    model::validate(changed.chip);
+    const Recording again = testbench::record_render(scene, changed);
+    EXPECT_TRUE(again.stream == recording.stream);
+    EXPECT_EQ(again.result.film.sha256(), recording.result.film.sha256());
+    EXPECT_EQ(replayed(recording, changed), in_full(scene, changed));
+    ++parameters;
+  }
+  EXPECT_GT(parameters, 60);
+}
+
+TEST_F(Replay, WhatTheFirmwareSeesChangesTheStream) {
+  const Scene scene = small_cornell_box({8, 6});
+  const RenderOptions options = render_options(Program::full, 2);
+  RenderOptions wider = options;
+  wider.chip.chip.pes = 32;
+  EXPECT_FALSE(testbench::record_render(scene, wider).stream ==
+               testbench::record_render(scene, options).stream);
+  EXPECT_EQ(model::find_parameter("chip.pes")->effect, model::Effect::stream);
+  EXPECT_EQ(model::find_parameter("poly.sram_bytes")->effect, model::Effect::stream);
+}
+
+TEST_F(Replay, IsTheSameAfterAJourneyBetweenProcesses) {
+  const Scene scene = small_cornell_box({8, 6});
+  const RenderOptions options = render_options(Program::direct, 2);
+  const Recording recording = testbench::record_render(scene, options);
+  const Recording arrived = testbench::decode_recording(scene, options, testbench::encode(recording));
+  EXPECT_TRUE(arrived.stream == recording.stream);
+  EXPECT_EQ(replayed(arrived, options), replayed(recording, options));
+  const std::string bytes = recording.stream.encode();
+  EXPECT_THROW(testbench::TimingStream::decode(bytes.substr(0, bytes.size() / 2)), testbench::RunError);
+}
+
+TEST_F(Replay, OfAnotherWidthIsRefused) {
+  const Scene scene = small_cornell_box({8, 6});
+  RenderOptions options = render_options(Program::direct, 1);
+  const Recording recording = testbench::record_render(scene, options);
+  options.chip.chip.pes = 64;
+  EXPECT_THROW(replayed(recording, options), testbench::RunError);
 }
 
 }  // namespace

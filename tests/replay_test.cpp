@@ -89,6 +89,8 @@ model::ParameterValue other_value(const model::ParameterInfo& parameter) {
   if (parameter.key == "ddr.refresh_cycles") return std::int64_t{700};
   if (parameter.key == "ddr.page_hit_cycles") return std::int64_t{7};
   if (parameter.key == "ddr.banks") return std::int64_t{2};
+  if (parameter.key == "ddr.refresh_interval_cycles") return std::int64_t{97};
+  if (parameter.key == "ddr.page_miss_cycles") return std::int64_t{137};
   if (parameter.key == "ddr.page_bytes") return std::int64_t{2048};
   if (parameter.key == "clear_connect.bytes_per_cycle") return std::int64_t{3};
   if (parameter.key == "clear_connect.packet_bytes") return std::int64_t{128};

@@ -129,22 +129,44 @@ class SweepReader {
       refuse(node, "axis", found_text(node), "[[axis]], each with one key or more");
     for (const toml::node& axis : *axes) {
       sweep_.axes.emplace_back();
-      read_axis(*axis.as_table(), "");
+      read_axis(*axis.as_table());
       if (sweep_.axes.back().keys.empty()) refuse(axis, "axis", "no key", "one key or more");
     }
   }
 
   static bool is_range(const toml::table& table) { return table.contains("from") || table.contains("to"); }
 
-  void read_axis(const toml::table& table, const std::string& prefix) {
+  /// A key of an axis with its list or range.
+  struct Leaf {
+    std::string key;
+    const toml::node* node;
+  };
+
+  void collect(const toml::table& table, const std::string& prefix, std::vector<Leaf>& leaves) const {
     for (const auto& [name, node] : table) {
       const std::string key = prefix + std::string(name.str());
       const toml::table* const group = node.as_table();
       if (group != nullptr && !is_range(*group)) {
-        read_axis(*group, key + ".");
+        collect(*group, key + ".", leaves);
       } else {
-        add_key(node, key, group != nullptr ? range(*group, key) : list(node, key));
+        leaves.push_back({key, &node});
       }
+    }
+  }
+
+  /// In the order of the file, which a TOML table does not keep.
+  void read_axis(const toml::table& table) {
+    std::vector<Leaf> leaves;
+    collect(table, "", leaves);
+    const auto place = [](const Leaf& leaf) {
+      const toml::source_position& begin = leaf.node->source().begin;
+      return std::make_pair(begin.line, begin.column);
+    };
+    std::stable_sort(leaves.begin(), leaves.end(),
+                     [&](const Leaf& a, const Leaf& b) { return place(a) < place(b); });
+    for (const auto& [key, node] : leaves) {
+      const toml::table* const as_range = node->as_table();
+      add_key(*node, key, as_range != nullptr ? range(*as_range, key) : list(*node, key));
     }
   }
 

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <map>
 
 #include "testbench/error.hpp"
 
@@ -16,6 +17,11 @@ namespace testbench {
 namespace {
 
 enum Status : int { succeeded = 0, run_error = 1, input_error = 2 };
+
+struct Child {
+  std::size_t job;
+  int pipe;
+};
 
 void write_all(int pipe, const std::string& text) {
   std::size_t written = 0;
@@ -56,23 +62,23 @@ std::string read_all(int pipe) {
   _exit(status);
 }
 
-ProcessPool::End end_of(int status) {
-  if (WIFEXITED(status) && WEXITSTATUS(status) == succeeded) return ProcessPool::End::done;
-  return WIFEXITED(status) && WEXITSTATUS(status) == input_error ? ProcessPool::End::input_error
-                                                                 : ProcessPool::End::run_error;
-}
+using Children = std::map<pid_t, Child>;
 
-}  // namespace
-
-ProcessPool::~ProcessPool() {
-  for (const auto& [child, info] : running_) {
-    kill(child, SIGKILL);
-    close(info.pipe);
-    waitpid(child, nullptr, 0);
+/// Waits until a child writes its result or ends.
+Children::const_iterator first_with_result(const Children& running) {
+  std::vector<pollfd> pipes;
+  for (const auto& [child, info] : running) pipes.push_back({info.pipe, POLLIN, 0});
+  while (poll(pipes.data(), pipes.size(), -1) < 0 && errno == EINTR) {
   }
+  auto found = running.begin();
+  for (const pollfd& pipe : pipes) {
+    if (pipe.revents != 0) break;
+    ++found;
+  }
+  return found != running.end() ? found : running.begin();
 }
 
-void ProcessPool::start(int job, const std::function<std::string()>& work) {
+std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
   int ends[2];
   if (pipe(ends) != 0) throw RunError(std::string("cannot make a pipe: ") + std::strerror(errno));
   std::fflush(nullptr);
@@ -80,59 +86,51 @@ void ProcessPool::start(int job, const std::function<std::string()>& work) {
   const pid_t child = fork();
   if (child < 0) throw RunError(std::string("cannot start a process: ") + std::strerror(errno));
   if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(run_error);  // it died before it could be asked for
+    end_with(parent);
     close(ends[0]);
-    run_child(work, ends[1]);
+    run_child(job, ends[1]);
   }
   close(ends[1]);
-  running_[child] = {job, ends[0]};
+  return {child, ends[0]};
 }
 
-std::optional<ProcessPool::Result> ProcessPool::next(int milliseconds) {
-  std::vector<pollfd> pipes;
-  for (const auto& [child, info] : running_) pipes.push_back({info.pipe, POLLIN, 0});
-  if (pipes.empty() || poll(pipes.data(), pipes.size(), milliseconds) <= 0) return std::nullopt;
-  auto found = running_.begin();
-  for (const pollfd& pipe : pipes) {
-    if (pipe.revents != 0) break;
-    ++found;
-  }
-  const auto [child, info] = *found;
-  // A result may be longer than a pipe's buffer, so it is read before the child can end, and reaped then.
-  Result result{info.job, End::done, read_all(info.pipe)};
-  close(info.pipe);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  running_.erase(found);
-  result.end = end_of(status);
-  if (result.end != End::done && result.text.empty())
-    result.text = "a run ended without a result (signal or crash)";
-  return result;
+}  // namespace
+
+void end_with(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(run_error);  // it ended before this call
 }
 
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,
                                           const std::function<void(int finished)>& done) {
   std::vector<std::string> results(jobs.size());
-  ProcessPool pool;
+  Children running;
   std::size_t next = 0;
   int finished = 0;
-  ProcessPool::Result failure;
-  while (pool.running() > 0 || (next < jobs.size() && failure.end == ProcessPool::End::done)) {
-    for (; failure.end == ProcessPool::End::done && next < jobs.size() && pool.running() < at_once; ++next)
-      pool.start(static_cast<int>(next), jobs[next]);
-    std::optional<ProcessPool::Result> result = pool.next();
-    if (!result) continue;  // a signal
-    if (result->end != ProcessPool::End::done) {
-      failure = std::move(*result);
+  int failure = succeeded;
+  std::string failure_text;
+  while (!running.empty() || (next < jobs.size() && failure == succeeded)) {
+    while (failure == succeeded && next < jobs.size() && running.size() < std::size_t(at_once)) {
+      const auto [child, pipe] = start_child(jobs[next]);
+      running[child] = {next++, pipe};
+    }
+    // A result may be longer than a pipe's buffer, so it is read before the child can end, and reaped then.
+    const auto [child, info] = *first_with_result(running);
+    std::string text = read_all(info.pipe);
+    close(info.pipe);
+    int status = 0;
+    waitpid(child, &status, 0);
+    running.erase(child);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != succeeded) {
+      failure = WIFEXITED(status) ? WEXITSTATUS(status) : run_error;
+      failure_text = text.empty() ? "a run ended without a result (signal or crash)" : text;
       continue;
     }
-    results[std::size_t(result->job)] = std::move(result->text);
+    results[info.job] = std::move(text);
     if (done) done(++finished);
   }
-  if (failure.end == ProcessPool::End::input_error) throw InputError(failure.text);
-  if (failure.end != ProcessPool::End::done) throw RunError(failure.text);
+  if (failure == input_error) throw InputError(failure_text);
+  if (failure != succeeded) throw RunError(failure_text);
   return results;
 }
 

@@ -144,17 +144,6 @@ TEST_F(Replay, WhatTheFirmwareSeesChangesTheStream) {
   EXPECT_EQ(model::find_parameter("poly.sram_bytes")->effect, model::Effect::stream);
 }
 
-TEST_F(Replay, IsTheSameAfterAJourneyBetweenProcesses) {
-  const Scene scene = small_cornell_box({8, 6});
-  const RenderOptions options = render_options(Program::direct, 2);
-  const Recording recording = testbench::record_render(scene, options);
-  const Recording arrived = testbench::decode_recording(scene, options, testbench::encode(recording));
-  EXPECT_TRUE(arrived.stream == recording.stream);
-  EXPECT_EQ(replayed(arrived, options), replayed(recording, options));
-  const std::string bytes = recording.stream.encode();
-  EXPECT_THROW(testbench::TimingStream::decode(bytes.substr(0, bytes.size() / 2)), testbench::RunError);
-}
-
 TEST_F(Replay, OfAnotherWidthIsRefused) {
   const Scene scene = small_cornell_box({8, 6});
   RenderOptions options = render_options(Program::direct, 1);

@@ -33,7 +33,7 @@ struct SweepCommand {
 
  private:
   std::vector<Setting> overrides() const;
-  /// Null where this rank cannot; then every rank throws the first rank's error that has one.
+  /// Throws InputError on the first rank when any rank cannot; the others get none then.
   std::unique_ptr<Sweep> read(Ranks& ranks) const;
   void run_first(const Sweep& sweep, Ranks& ranks) const;
   void forget_failed(const Sweep& sweep, PointStore& store) const;
@@ -60,8 +60,11 @@ std::unique_ptr<Sweep> SweepCommand::read(Ranks& ranks) const {
   } catch (const InputError& wrong) {
     error = wrong.what();
   }
-  for (const std::string& of_rank : ranks.exchange(error))
-    if (!of_rank.empty()) throw InputError(of_rank);
+  for (const std::string& of_rank : ranks.exchange(error)) {
+    if (of_rank.empty()) continue;
+    if (ranks.is_first()) throw InputError(of_rank);
+    return nullptr;  // the first rank says it
+  }
   return sweep;
 }
 
@@ -140,6 +143,7 @@ void SweepCommand::run_first(const Sweep& sweep, Ranks& ranks) const {
 void SweepCommand::run() {
   Ranks ranks;
   const std::unique_ptr<Sweep> sweep = read(ranks);
+  if (!sweep) return;
   if (!ranks.is_first()) return serve_sweep(*sweep, ranks);
   if (ranks.alone()) return run_first(*sweep, ranks);
   jobs = 1;

@@ -1,11 +1,8 @@
 #include "testbench/sweep/replay.hpp"
 
-#include <cstring>
-
 #include "testbench/error.hpp"
 #include "testbench/host_pc.hpp"
 #include "testbench/host_time.hpp"
-#include "testbench/sweep/stream_bytes.hpp"
 
 namespace testbench {
 
@@ -37,25 +34,6 @@ RenderResult replay_on_chip(const Recording& recording, const RenderOptions& opt
   result.cpu_seconds = timer.cpu_seconds();
   result.wall_seconds = timer.wall_seconds();
   return result;
-}
-
-std::string encode(const Recording& recording) {
-  static_assert(std::is_trivially_copyable_v<path_tracer::RunCounts>);
-  std::string bytes(sizeof(path_tracer::RunCounts), '\0');
-  std::memcpy(bytes.data(), &recording.result.counts, sizeof(path_tracer::RunCounts));
-  append_text(bytes, recording.result.film.bytes());
-  append_text(bytes, recording.stream.encode());
-  return bytes;
-}
-
-Recording decode_recording(const Scene& scene, const RenderOptions& options, const std::string& bytes) {
-  ByteReader reader(bytes);
-  path_tracer::RunCounts counts;
-  std::memcpy(&counts, reader.text(sizeof(counts)).data(), sizeof(counts));
-  RenderResult result(Film::from_bytes(scene.film, film_scale(scene), std::string(reader.text())));
-  result.counts = counts;
-  return {make_mono_image(scene, options.chip.chip.pes, options.program), TimingStream::decode(reader.text()),
-          std::move(result)};
 }
 
 }  // namespace testbench

@@ -21,9 +21,4 @@ Recording record_render(const Scene& scene, const RenderOptions& options);
 /// most one a process. Throws as render_on_chip() does.
 RenderResult replay_on_chip(const Recording& recording, const RenderOptions& options);
 
-/// Of a recording that comes from another process.
-std::string encode(const Recording& recording);
-/// @param options those of the recorded run
-Recording decode_recording(const Scene& scene, const RenderOptions& options, const std::string& bytes);
-
 }  // namespace testbench

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 #include "testbench/error.hpp"
@@ -14,11 +13,6 @@ void append_number(Bytes& bytes, std::uint64_t number) {
   using Byte = typename Bytes::value_type;
   for (; number >= 0x80; number >>= 7) bytes.push_back(static_cast<Byte>(number | 0x80));
   bytes.push_back(static_cast<Byte>(number));
-}
-
-inline void append_text(std::string& bytes, std::string_view text) {
-  append_number(bytes, text.size());
-  bytes.append(text);
 }
 
 /// Reads them back; RunError at the end of the bytes.
@@ -45,7 +39,6 @@ class ByteReader {
     next_ += bytes;
     return found;
   }
-  std::string_view text() { return text(number()); }
 
  private:
   const char* next_;

@@ -35,6 +35,7 @@ std::string scene_digest(const Scene& scene) {
 
 Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides)
     : keys_(file.keys()), base_(file.base) {
+  for (const SweepAxis& axis : file.axes) axes_.push_back(axis.keys);
   for (const Setting& setting : overrides) {
     require_allowed(setting);
     if (std::find(keys_.begin(), keys_.end(), setting.key) != keys_.end())

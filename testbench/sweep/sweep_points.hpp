@@ -28,6 +28,7 @@ class Sweep {
   Sweep(const SweepFile& file, const std::vector<Setting>& overrides);
 
   const std::vector<std::string>& keys() const { return keys_; }
+  const std::vector<std::vector<std::string>>& axes() const { return axes_; }  ///< their keys
   const std::vector<Setting>& base() const { return base_; }
   const std::vector<SweepPoint>& points() const { return points_; }
 
@@ -41,6 +42,7 @@ class Sweep {
   const LoadedScene& scene_of(const RunSettings& run);
 
   std::vector<std::string> keys_;
+  std::vector<std::vector<std::string>> axes_;
   std::vector<Setting> base_;
   std::map<std::string, std::unique_ptr<LoadedScene>> scenes_;  ///< by path and size
   std::vector<SweepPoint> points_;

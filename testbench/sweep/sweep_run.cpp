@@ -1,215 +1,45 @@
 #include "testbench/sweep/sweep_run.hpp"
 
-#include <unistd.h>
-
-#include <algorithm>
 #include <deque>
-#include <map>
 #include <set>
 
 #include "testbench/error.hpp"
 #include "testbench/processes.hpp"
 #include "testbench/sweep/point_work.hpp"
+#include "testbench/sweep/sweep_plan.hpp"
+#include "testbench/workers.hpp"
 
 namespace testbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kPollMilliseconds = 100;      ///< how soon a wish to stop is heard
-constexpr int kRankPollMicroseconds = 500;  ///< how soon another rank gets its next point
+constexpr int kPollMilliseconds = 100;  ///< how soon a wish to stop is heard
+constexpr int kRankPollMilliseconds = 1;
 
 constexpr const char* kReady = "ready";
 constexpr const char* kStop = "stop";
 
-Json inputs_json(const Sweep& sweep, const SweepPoint& point) {
-  Json inputs = Json::object();
-  for (std::size_t i = 0; i < point.inputs.size(); ++i) inputs[sweep.keys()[i]] = point.inputs[i];
-  return inputs;
-}
-
-PointMode mode_of(const SweepPoint& point, bool replays) {
-  return !replays ? PointMode::full : point.audited ? PointMode::audit : PointMode::replay;
-}
-
-/// The points that are left of one stream of calls.
-struct StreamWork {
-  enum class Stage : std::uint8_t { not_recorded, recording, recorded };
-
-  std::deque<std::size_t> todo;
-  bool replays = false;  ///< a recording pays for itself
-  Stage stage = Stage::not_recorded;
-  std::unique_ptr<Recording> recording;
-};
-
-class SweepRun {
+/// Answers orders for points, in worker processes and on other ranks.
+class PointServer {
  public:
-  SweepRun(const Sweep& sweep, PointStore& store, const SweepRunOptions& options, Ranks& ranks,
-           const SweepProgress& progress)
-      : sweep_(sweep), store_(store), options_(options), ranks_(ranks), progress_(progress) {
-    std::map<std::string, std::size_t> stream_of;
-    std::set<std::string> taken;  // two points may be the same run
-    for (std::size_t i = 0; i < sweep.points().size(); ++i) {
-      const SweepPoint& point = sweep.points()[i];
-      if (store.find(point.id) != nullptr || !taken.insert(point.id).second) continue;
-      ++total_;
-      if (!point.error.empty()) {
-        without_run_.push_back(i);
-        continue;
-      }
-      const auto [entry, is_new] = stream_of.emplace(point.stream, streams_.size());
-      if (is_new) streams_.emplace_back();
-      streams_[entry->second].todo.push_back(i);
-    }
-    for (StreamWork& stream : streams_) stream.replays = !options.in_full && stream.todo.size() > 1;
-  }
+  explicit PointServer(const Sweep& sweep) : sweep_(sweep) {}
 
-  bool run() {
-    for (const std::size_t i : without_run_) finish(i, failed_point(sweep_.points()[i].error));
-    while (finished_ < total_) {
-      if (!progress_(double(finished_) / double(total_))) return false;
-      start_jobs();
-      serve_ranks();
-      wait();
-    }
-    progress_(1);
-    for (int rank = 1; rank < ranks_.size(); ++rank) ranks_.send(rank, kStop);
-    return true;
+  /// { point, id, replays } to { point, result: a PointStore line }. Throws nothing.
+  std::string answer(const std::string& text) {
+    const Json order = Json::parse(text);
+    return Json{{"point", order["point"]}, {"result", run(order)}}.dump();
   }
 
  private:
-  const SweepPoint& point(std::size_t i) const { return sweep_.points()[i]; }
-
-  void finish(std::size_t i, Json result) {
-    Json line = {{"inputs", inputs_json(sweep_, point(i))}};
-    line.update(result);
-    store_.add(point(i).id, std::move(line));
-    ++finished_;
-  }
-
-  void start_jobs() {
-    while (pool_.running() < options_.jobs && (start_point() || start_recording())) {
-    }
-  }
-
-  /// Of a stream that is ready for it.
-  bool start_point() {
-    for (StreamWork& stream : streams_) {
-      if (stream.todo.empty() || (stream.replays && stream.stage != StreamWork::Stage::recorded)) continue;
-      const std::size_t i = stream.todo.front();
-      stream.todo.pop_front();
-      const Recording* const recording = stream.recording.get();
-      const PointMode mode = mode_of(point(i), stream.replays);
-      pool_.start(static_cast<int>(i), [&, recording, mode] { return run_point(point(i), recording, mode); });
-      if (stream.todo.empty()) stream.recording.reset();  // the child has it
-      return true;
-    }
-    return false;
-  }
-
-  bool start_recording() {
-    for (std::size_t s = 0; s < streams_.size(); ++s) {
-      StreamWork& stream = streams_[s];
-      if (stream.todo.empty() || !stream.replays || stream.stage != StreamWork::Stage::not_recorded) continue;
-      stream.stage = StreamWork::Stage::recording;
-      const SweepPoint& first = point(stream.todo.front());
-      recorded_as_[s] = stream.todo.front();
-      pool_.start(-1 - static_cast<int>(s),
-                  [&first] { return encode(record_render(*first.scene, first.request.options)); });
-      return true;
-    }
-    return false;
-  }
-
-  void take_recording(std::size_t s, const ProcessPool::Result& result) {
-    StreamWork& stream = streams_[s];
-    if (result.end == ProcessPool::End::done) {
-      const SweepPoint& first = point(recorded_as_[s]);
-      stream.recording =
-          std::make_unique<Recording>(decode_recording(*first.scene, first.request.options, result.text));
-      stream.stage = StreamWork::Stage::recorded;
-      return;
-    }
-    stream.replays = false;  // each point then says for itself what is wrong with it
-  }
-
-  void take_result(const ProcessPool::Result& result) {
-    if (result.job < 0) return take_recording(std::size_t(-1 - result.job), result);
-    finish(std::size_t(result.job),
-           result.end == ProcessPool::End::done ? Json::parse(result.text) : failed_point(result.text));
-  }
-
-  void wait() {
-    if (ranks_.alone()) {
-      if (const auto result = pool_.next(kPollMilliseconds)) take_result(*result);
-      return;
-    }
-    if (const auto result = pool_.next(0)) {
-      take_result(*result);
-    } else {
-      usleep(kRankPollMicroseconds);
-    }
-  }
-
-  void serve_ranks() {
-    while (const auto message = ranks_.try_receive()) {
-      if (message->bytes != kReady) {
-        const Json answer = Json::parse(message->bytes);
-        finish(answer["point"].get<std::size_t>(), answer["result"]);
-      }
-      idle_ranks_.push_back(message->from);
-    }
-    while (!idle_ranks_.empty() && hand_out_to(idle_ranks_.front())) idle_ranks_.pop_front();
-  }
-
-  /// Points of one stream go to one rank, as long as there are others: it has the recording.
-  bool hand_out_to(int rank) {
-    const auto last = stream_of_rank_.find(rank);
-    std::size_t chosen = streams_.size();
-    if (last != stream_of_rank_.end() && !streams_[last->second].todo.empty()) chosen = last->second;
-    if (chosen == streams_.size()) {
-      const auto longest =
-          std::max_element(streams_.begin(), streams_.end(),
-                           [](const auto& a, const auto& b) { return a.todo.size() < b.todo.size(); });
-      if (longest == streams_.end() || longest->todo.empty()) return false;
-      chosen = std::size_t(longest - streams_.begin());
-    }
-    stream_of_rank_[rank] = chosen;
-    StreamWork& stream = streams_[chosen];
-    const std::size_t i = stream.todo.back();
-    stream.todo.pop_back();
-    ranks_.send(rank, Json{{"point", i}, {"id", point(i).id}, {"replays", stream.replays}}.dump());
-    return true;
-  }
-
-  const Sweep& sweep_;
-  PointStore& store_;
-  SweepRunOptions options_;
-  Ranks& ranks_;
-  const SweepProgress& progress_;
-
-  std::vector<StreamWork> streams_;
-  std::map<std::size_t, std::size_t> recorded_as_;  ///< by stream: the point whose settings recorded it
-  std::vector<std::size_t> without_run_;
-  std::size_t total_ = 0;
-  std::size_t finished_ = 0;
-  std::map<int, std::size_t> stream_of_rank_;
-  std::deque<int> idle_ranks_;
-  ProcessPool pool_;
-};
-
-/// One rank's work, a point at a time, with the recording it used last.
-class RankWork {
- public:
-  explicit RankWork(const Sweep& sweep) : sweep_(sweep) {}
-
   Json run(const Json& order) {
     const auto i = order["point"].get<std::size_t>();
     if (i >= sweep_.points().size() || sweep_.points()[i].id != order["id"])
       return failed_point("another rank read another sweep: the ranks' files or programs differ");
     const SweepPoint& point = sweep_.points()[i];
     if (order["replays"]) record(point);
-    const PointMode mode = mode_of(point, order["replays"] && recording_);
+    const bool replays = order["replays"] && recording_;
+    const PointMode mode = !replays ? PointMode::full : point.audited ? PointMode::audit : PointMode::replay;
     try {
       return Json::parse(run_in_processes({[&] { return run_point(point, recording_.get(), mode); }}, 1)[0]);
     } catch (const std::exception& error) {
@@ -217,7 +47,6 @@ class RankWork {
     }
   }
 
- private:
   void record(const SweepPoint& point) {
     if (stream_ == point.stream) return;
     stream_ = point.stream;
@@ -234,20 +63,122 @@ class RankWork {
   std::unique_ptr<Recording> recording_;  ///< null if that failed
 };
 
+/// The first rank's part. Server 0 to jobs - 1 are its workers, -1, -2, ... the other ranks.
+class SweepRun {
+ public:
+  SweepRun(const Sweep& sweep, PointStore& store, const SweepRunOptions& options, Ranks& ranks)
+      : sweep_(sweep),
+        store_(store),
+        ranks_(ranks),
+        left_(points_left()),
+        plan_(sweep, left_, options.in_full) {
+    const auto jobs = static_cast<int>(std::min(std::size_t(options.jobs), left_.size()));
+    workers_.emplace(jobs, [&sweep] {
+      const auto server = std::make_shared<PointServer>(sweep);
+      return [server](const std::string& order) { return server->answer(order); };
+    });
+    for (int worker = 0; worker < jobs; ++worker) idle_.push_back(worker);
+    orders_.resize(std::size_t(jobs));
+  }
+
+  bool run(const SweepProgress& progress) {
+    const std::size_t total = finished_ + left_.size();
+    while (finished_ < total) {
+      if (!progress(double(finished_) / double(total))) return false;
+      hand_out();
+      take_results();
+    }
+    for (int rank = 1; rank < ranks_.size(); ++rank) ranks_.send(rank, kStop);
+    return true;
+  }
+
+ private:
+  const SweepPoint& point(std::size_t i) const { return sweep_.points()[i]; }
+
+  /// What cannot run is finished here. Two points may be the same run.
+  std::vector<std::size_t> points_left() {
+    std::vector<std::size_t> left;
+    std::set<std::string> taken;
+    for (std::size_t i = 0; i < sweep_.points().size(); ++i) {
+      if (store_.find(point(i).id) != nullptr || !taken.insert(point(i).id).second) continue;
+      if (point(i).error.empty()) {
+        left.push_back(i);
+      } else {
+        finish(i, failed_point(point(i).error));
+      }
+    }
+    return left;
+  }
+
+  void finish(std::size_t i, const Json& result) {
+    Json line = {{"inputs", Json::object()}};
+    for (std::size_t k = 0; k < point(i).inputs.size(); ++k)
+      line["inputs"][sweep_.keys()[k]] = point(i).inputs[k];
+    line.update(result);
+    store_.add(point(i).id, std::move(line));
+    ++finished_;
+  }
+
+  void hand_out() {
+    for (; !idle_.empty(); idle_.pop_front()) {
+      const int server = idle_.front();
+      const std::optional<SweepPlan::Order> order = plan_.next(server);
+      if (!order) return;
+      const std::string text =
+          Json{{"point", order->point}, {"id", point(order->point).id}, {"replays", order->replays}}.dump();
+      if (server < 0) {
+        ranks_.send(-server, text);
+      } else {
+        orders_[std::size_t(server)] = order->point;
+        workers_->send(server, text);
+      }
+    }
+  }
+
+  void take_results() {
+    if (const auto reply = workers_->next(ranks_.alone() ? kPollMilliseconds : kRankPollMilliseconds)) {
+      if (reply->text) {
+        take(*reply->text);
+      } else {
+        finish(orders_[std::size_t(reply->worker)],
+               failed_point("the run ended without a result (signal or crash)"));
+      }
+      idle_.push_back(reply->worker);
+    }
+    while (const auto message = ranks_.try_receive()) {
+      if (message->bytes != kReady) take(message->bytes);
+      idle_.push_back(-message->from);
+    }
+  }
+
+  void take(const std::string& text) {
+    const Json answer = Json::parse(text);
+    finish(answer["point"].get<std::size_t>(), answer["result"]);
+  }
+
+  const Sweep& sweep_;
+  PointStore& store_;
+  Ranks& ranks_;
+  std::size_t finished_ = 0;
+  std::vector<std::size_t> left_;
+  SweepPlan plan_;
+  std::optional<Workers> workers_;
+  std::vector<std::size_t> orders_;  ///< by worker: its point
+  std::deque<int> idle_;
+};
+
 }  // namespace
 
 bool run_sweep(const Sweep& sweep, PointStore& store, const SweepRunOptions& options, Ranks& ranks,
                const SweepProgress& progress) {
-  return SweepRun(sweep, store, options, ranks, progress).run();
+  return SweepRun(sweep, store, options, ranks).run(progress);
 }
 
 void serve_sweep(const Sweep& sweep, Ranks& ranks) {
-  RankWork work(sweep);
+  PointServer server(sweep);
   ranks.send(0, kReady);
-  for (std::string order = ranks.receive().bytes; order != kStop; order = ranks.receive().bytes) {
-    const Json json = Json::parse(order);
-    ranks.send(0, Json{{"point", json["point"]}, {"result", work.run(json)}}.dump());
-  }
+  for (std::string order = ranks.receive().bytes; order != kStop; order = ranks.receive().bytes)
+    ranks.send(0, server.answer(order));
 }
 
 }  // namespace testbench

@@ -65,7 +65,10 @@ Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
   json["status"] = line == nullptr ? Json("missing") : (*line)["status"];
   if (line == nullptr) return json;
   if (line->contains("error")) json["error"] = (*line)["error"];
-  if (line->contains("statistics")) json["results"] = results_of((*line)["statistics"]);
+  if (!line->contains("statistics")) return json;
+  const model::ChipConfig& chip = point.request.options.chip;
+  json["results"] = results_of((*line)["statistics"]);
+  json["results"]["total_sram_bytes"] = std::int64_t{chip.chip.pes} * chip.poly.sram_bytes;
   return json;
 }
 
@@ -92,7 +95,11 @@ Json sweep_json(const Sweep& sweep, const PointStore& store) {
   Json points = Json::array();
   for (const SweepPoint& point : sweep.points())
     points.push_back(point_json(sweep, point, store.find(point.id)));
-  return {{"format", kSweepFormat}, {"keys", sweep.keys()}, {"base", base}, {"points", points}};
+  return {{"format", kSweepFormat},
+          {"keys", sweep.keys()},
+          {"axes", sweep.axes()},
+          {"base", base},
+          {"points", points}};
 }
 
 std::string sweep_csv(const Json& sweep) {

@@ -11,9 +11,9 @@ namespace testbench {
 inline constexpr const char* kSweepFormat = "csx600-sweep-1";
 
 /// All points in the order of the sweep, those that are not finished as status "missing":
-/// { format, keys, base, points: [{ inputs, status, error, results: { name: number } }] }. Results are the
-/// numbers of the statistics file, named by their path in it, after rates and utilisations made of them. The
-/// same bytes for the same sweep, however it was run.
+/// { format, keys, axes: [[keys that change together]], base, points: [{ inputs, status, error, results: {
+/// name: number } }] }. Results are the numbers of the statistics file, named by their path in it, after
+/// rates and utilisations made of them. The same bytes for the same sweep, however it was run.
 nlohmann::ordered_json sweep_json(const Sweep& sweep, const PointStore& store);
 
 /// The points of sweep_json() as CSV, one a row: inputs, status, error, then every result that any point has.

@@ -241,43 +241,6 @@ bool TimingStream::operator==(const TimingStream& other) const {
          kernels == other.kernels && issued == other.issued && calls == other.calls;
 }
 
-std::string TimingStream::encode() const {
-  std::string bytes;
-  append_number(bytes, bits_of(num_pes));
-  append_number(bytes, semaphores.size());
-  for (const std::string& name : semaphores) append_text(bytes, name);
-  append_number(bytes, poly_buffers.size());
-  for (const PolyBuffer& buffer : poly_buffers) {
-    append_text(bytes, buffer.name);
-    append_number(bytes, bits_of(buffer.bytes));
-  }
-  append_number(bytes, kernels.size());
-  for (const std::string& name : kernels) append_text(bytes, name);
-  append_number(bytes, issued.size());
-  for (const cn::IssueCounts& counts : issued)
-    for (const std::uint64_t count : counts.by_class) append_number(bytes, count);
-  append_text(bytes, as_text(calls));
-  return bytes;
-}
-
-TimingStream TimingStream::decode(std::string_view bytes) {
-  ByteReader reader(bytes);
-  TimingStream stream;
-  stream.num_pes = static_cast<int>(reader.number());
-  for (std::uint64_t left = reader.number(); left > 0; --left) stream.semaphores.emplace_back(reader.text());
-  for (std::uint64_t left = reader.number(); left > 0; --left) {
-    const std::string_view name = reader.text();
-    stream.poly_buffers.push_back({std::string(name), static_cast<int>(reader.number())});
-  }
-  for (std::uint64_t left = reader.number(); left > 0; --left) stream.kernels.emplace_back(reader.text());
-  stream.issued.resize(reader.number());
-  for (cn::IssueCounts& counts : stream.issued)
-    for (std::uint64_t& count : counts.by_class) count = reader.number();
-  const std::string_view calls = reader.text();
-  stream.calls.assign(calls.begin(), calls.end());
-  return stream;
-}
-
 void TimingStream::replay(cn::Machine& machine) const {
   Replay(*this, machine).run();
 }

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "firmware/cn/instruction.hpp"
@@ -35,11 +34,6 @@ class TimingStream {
   std::vector<std::uint8_t> calls;
 
   bool operator==(const TimingStream& other) const;
-
-  /// For decode() of the same build: how a stream gets from one process to another.
-  std::string encode() const;
-  /// Throws RunError for bytes that encode() has not made.
-  static TimingStream decode(std::string_view bytes);
 
   /// Makes the same calls on `machine`, as its firmware; transfers move what happens to lie in its poly
   /// memory. The machine must have num_pes PEs and no semaphore allocated.

@@ -4,6 +4,14 @@
 const kColours = ["#2f6db5", "#d1782b", "#3a923a", "#a23b72", "#7a5fb5", "#8c6d46", "#c2467d", "#6b6b6b", "#9aa320", "#25a1a8"];
 const charts = [];
 
+// For those who look at the page without a console.
+window.addEventListener("error", (event) => { document.body.dataset.error = event.message; });
+
+/// Text is measured where it is drawn, so the charts need the page's font by name.
+function chartBase() {
+  return { animation: false, color: kColours, textStyle: { fontFamily: getComputedStyle(document.body).fontFamily } };
+}
+
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
@@ -39,7 +47,7 @@ function addChart(section, option) {
   const place = element("div", { class: "chart" });
   section.append(place);
   const chart = echarts.init(place, null, { renderer: "svg" });
-  chart.setOption({ animation: false, color: kColours, textStyle: { fontFamily: "inherit" }, ...option });
+  chart.setOption({ ...chartBase(), ...option });
   charts.push(chart);
   return chart;
 }
@@ -51,7 +59,7 @@ function addBars(section, rows, label) {
     grid: { left: 8, right: 90, top: 8, bottom: 8, containLabel: true },
     tooltip: { trigger: "item", formatter: (item) => `${item.name}: ${label(item.value)}` },
     xAxis: { type: "value", axisLabel: { formatter: (value) => forPeople(value), hideOverlap: true } },
-    yAxis: { type: "category", data: sorted.map((row) => row[0]), axisLabel: { width: 150, overflow: "truncate" } },
+    yAxis: { type: "category", data: sorted.map((row) => row[0]), axisLabel: { width: 190, overflow: "truncate" } },
     series: [{ type: "bar", data: sorted.map((row) => row[1]), barMaxWidth: 26,
                label: { show: true, position: "right", formatter: (item) => label(item.value) } }],
   });
@@ -65,7 +73,7 @@ function addTable(section, head, rows) {
     ? element("td", { class: value.class || "text" }, value.text)
     : element("td", {}, typeof value === "number" ? forPeople(value) : String(value ?? ""));
   section.append(element("div", { class: "scroll" }, element("table", {},
-    element("thead", {}, element("tr", {}, ...head.map((name) => element("th", {}, name)))),
+    element("thead", {}, element("tr", {}, ...head.map((name, i) => element("th", rows.length && typeof rows[0][i] === "object" ? { class: "text" } : {}, name)))),
     element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map(cell)))))));
 }
 

@@ -99,14 +99,15 @@ function showRoofline(run, chip) {
     name: path.name, type: "line", showSymbol: false,
     data: [[low, low * path.peak], [roof.peak / path.peak, roof.peak], [high, roof.peak]] }));
   const points = roof.paths.map((path, i) => ({
-    name: `this run, bytes of ${path.name}`, type: "scatter", symbolSize: 13, itemStyle: { color: kColours[i], borderColor: "#000" },
+    name: `this run, bytes of ${path.name}`, type: "scatter", symbol: ["circle", "diamond", "triangle"][i % 3], symbolSize: 18 - 5 * i, itemStyle: { color: kColours[i], borderColor: "#000" },
     data: [[path.intensity, roof.flops]] }));
   addChart(section, {
     grid: { left: 8, right: 24, top: 60, bottom: 30, containLabel: true },
     legend: { top: 0 },
     tooltip: { trigger: "item", formatter: (item) => `${item.seriesName}: ${forPeople(item.value[0])} flop/byte, ${forPeople(item.value[1], "flop/s")}` },
     xAxis: { type: "log", min: low, max: high, name: "flop/byte", nameLocation: "middle", nameGap: 26 },
-    yAxis: { type: "log", axisLabel: { formatter: (value) => forPeople(value) }, name: "flop/s" },
+    yAxis: { type: "log", min: 10 ** Math.floor(Math.log10(roof.flops / 3)), max: 10 ** Math.ceil(Math.log10(roof.peak)),
+             axisLabel: { formatter: (value) => forPeople(value) }, name: "flop/s" },
     series: [...lines, ...points],
   });
 }

@@ -85,7 +85,7 @@ class AxisPlot {
       data: chosen.filter((point) => !this.series || point.inputs[this.series] === value).map((point) => [place(point), point.results[this.y]]),
     }));
     this.chart.setOption({
-      animation: false, color: kColours, textStyle: { fontFamily: "inherit" },
+      ...chartBase(),
       grid: { left: 8, right: 24, top: 44, bottom: 34, containLabel: true },
       legend: { top: 0, type: "scroll" },
       tooltip: { trigger: "item", formatter: (item) => `${item.seriesName}<br>${this.x} = ${item.value[0]}<br>${this.y} = ${forPeople(item.value[1])}` },
@@ -129,7 +129,7 @@ class ParetoPlot {
     const dot = (point) => ({ value: [cost(point), gain(point)], name: describe(point.inputs, this.sweep.keys) });
     const scale = (values) => (scaleOf(values) === "log" ? "log" : "value");
     this.chart.setOption({
-      animation: false, color: kColours, textStyle: { fontFamily: "inherit" },
+      ...chartBase(),
       grid: { left: 8, right: 24, top: 44, bottom: 34, containLabel: true },
       legend: { top: 0 },
       tooltip: { trigger: "item", formatter: (item) => `${item.name}<br>${this.cost} = ${forPeople(item.value[0])}<br>rays/s = ${forPeople(item.value[1])}` },

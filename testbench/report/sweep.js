@@ -86,10 +86,10 @@ class AxisPlot {
     }));
     this.chart.setOption({
       ...chartBase(),
-      grid: { left: 8, right: 24, top: 44, bottom: 34, containLabel: true },
+      grid: { left: 8, right: 24, top: 60, bottom: 34, containLabel: true },
       legend: { top: 0, type: "scroll" },
       tooltip: { trigger: "item", formatter: (item) => `${item.seriesName}<br>${this.x} = ${item.value[0]}<br>${this.y} = ${forPeople(item.value[1])}` },
-      xAxis: { type: scale, name: this.x, nameLocation: "middle", nameGap: 28, scale: true,
+      xAxis: { type: scale, name: this.x, nameLocation: "middle", nameGap: 28, scale: true, axisLabel: { formatter: String },
                ...(scale === "log" ? { logBase: 2, min: Math.min(...values), max: Math.max(...values) } : {}),
                ...(scale === "category" ? { data: values.map(String) } : {}) },
       yAxis: { type: "value", name: this.y, nameTextStyle: { align: "left" }, scale: false,
@@ -130,7 +130,7 @@ class ParetoPlot {
     const scale = (values) => (scaleOf(values) === "log" ? "log" : "value");
     this.chart.setOption({
       ...chartBase(),
-      grid: { left: 8, right: 24, top: 44, bottom: 34, containLabel: true },
+      grid: { left: 8, right: 24, top: 60, bottom: 34, containLabel: true },
       legend: { top: 0 },
       tooltip: { trigger: "item", formatter: (item) => `${item.name}<br>${this.cost} = ${forPeople(item.value[0])}<br>rays/s = ${forPeople(item.value[1])}` },
       xAxis: { type: scale(this.points.map(cost)), name: this.cost, nameLocation: "middle", nameGap: 28, scale: true, axisLabel: { formatter: (value) => forPeople(value), hideOverlap: true } },

@@ -9,14 +9,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The numbers below `json`, each under its path. Entries of lists go by their name; how often each
-/// instruction was issued stays in the statistics.
+/// Of a distribution: a list of numbers, or counts by number.
+bool is_distribution(const Json& json) {
+  const auto by_number = [](const auto& entry) {
+    return entry.key().find_first_not_of("0123456789") == std::string::npos && entry.value().is_number();
+  };
+  const auto entries = json.items();
+  return !json.empty() && std::all_of(entries.begin(), entries.end(), by_number);
+}
+
+/// The numbers below `json`, each under its path. Entries of lists go by their name; distributions and how
+/// often each instruction was issued stay in the statistics.
 void add_numbers(const Json& json, const std::string& path, Json& results) {
   if (json.is_number()) {
     results[path] = json;
     return;
   }
-  if (!json.is_structured()) return;
+  if (!json.is_structured() || is_distribution(json)) return;
   for (const auto& [key, value] : json.items()) {
     if (key == "issued") continue;
     const std::string name = json.is_array() && value.is_object() && value.contains("name")

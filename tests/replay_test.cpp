@@ -12,6 +12,7 @@
 #include "model/chip_presets.hpp"
 #include "testbench/error.hpp"
 #include "testbench/render_report.hpp"
+#include "testbench/sweep/point_work.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
@@ -150,6 +151,29 @@ TEST_F(Replay, OfAnotherWidthIsRefused) {
   const Recording recording = testbench::record_render(scene, options);
   options.chip.chip.pes = 64;
   EXPECT_THROW(replayed(recording, options), testbench::RunError);
+}
+
+/// An audit that finds nothing must be able to find something.
+TEST_F(Replay, AnAuditFindsTheRecordingOfAnotherRun) {
+  const Scene scene = small_cornell_box({8, 6});
+  testbench::SweepPoint point;
+  point.scene = &scene;
+  point.request = {"scene", render_options(Program::full, 1), false};
+  RenderOptions other = point.request.options;
+  other.program.n = 2;
+  const Recording own = testbench::record_render(scene, point.request.options);
+  const Recording of_another = testbench::record_render(scene, other);
+  const auto audit = [&](const Recording& recording) {
+    return testbench::run_point(point, &recording, testbench::PointMode::audit);
+  };
+  EXPECT_NE(audit(own).find("\"audited\":true"), std::string::npos);
+  try {
+    audit(of_another);
+    ADD_FAILURE() << "no difference found";
+  } catch (const testbench::RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("audit: replayed and full run differ: /"), std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "testbench/error.hpp"
+#include "testbench/sweep/sweep_plan.hpp"
 #include "testbench/sweep/sweep_points.hpp"
 
 namespace {
@@ -181,6 +182,36 @@ TEST_F(SweepFileTest, TheAuditTakesItsShareOfThePoints) {
   EXPECT_NE(audited("audit.seed = 2\n"), usual);
   EXPECT_EQ(count(audited("audit.share = 0\n")), 0);
   EXPECT_EQ(count(audited("audit.share = 1\n")), 1000);
+}
+
+TEST_F(SweepFileTest, ThePlanKeepsAServerOnItsStream) {
+  const std::string scene = "scene = \"" CSX600_SCENES_DIR "/cornell_box\"\nsize = \"8x6\"\n";
+  const Sweep sweep(load(scene + "[[axis]]\nfirmware.n = [0, 1]\n[[axis]]\npio.setup_cycles = [1, 2, 3]\n"),
+                    {});
+  testbench::SweepPlan plan(sweep, {0, 1, 2, 3, 4, 5}, false);
+  const auto stream = [&](int server) { return sweep.points()[plan.next(server)->point].stream; };
+  const std::string of_0 = stream(0);
+  const std::string of_1 = stream(1);
+  EXPECT_NE(of_0, of_1);
+  EXPECT_EQ(stream(0), of_0);
+  EXPECT_EQ(stream(1), of_1);
+  EXPECT_EQ(stream(0), of_0);
+  EXPECT_EQ(stream(0), of_1) << "helps out when its own is done";
+  EXPECT_FALSE(plan.next(1));
+}
+
+TEST_F(SweepFileTest, ThePlanReplaysWhatIsSharedAndNothingElse) {
+  const std::string scene = "scene = \"" CSX600_SCENES_DIR "/cornell_box\"\nsize = \"8x6\"\n";
+  const Sweep sweep(load(scene + "[[axis]]\nfirmware.n = [0, 1]\n[[axis]]\npio.setup_cycles = [1, 2]\n"), {});
+  testbench::SweepPlan some(sweep, {0, 1, 2}, false);
+  for (int i = 0; i < 3; ++i) {
+    const auto order = some.next(0);
+    EXPECT_EQ(order->replays, order->point < 2) << order->point;
+  }
+  testbench::SweepPlan in_full(sweep, {0, 1, 2, 3}, true);
+  EXPECT_FALSE(in_full.next(0)->replays);
+  testbench::SweepPlan nothing(sweep, {}, false);
+  EXPECT_FALSE(nothing.next(0));
 }
 
 }  // namespace

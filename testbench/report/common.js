@@ -52,11 +52,16 @@ function addChart(section, option) {
   return chart;
 }
 
-/// Rows of [label, value]: horizontal bars, the longest on top. `label` says a value for people.
+/// Rows of [label, value]: horizontal bars, the longest on top, the shortest of too many as one. `label` says a value
+/// for people.
 function addBars(section, rows, label) {
-  const sorted = rows.filter((row) => row[1] > 0).sort((a, b) => a[1] - b[1]);
+  const kMost = 14;
+  const falling = rows.filter((row) => row[1] > 0).sort((a, b) => b[1] - a[1]);
+  const rest = falling.length > kMost ? falling.splice(kMost - 1) : [];
+  if (rest.length) falling.push([`${rest.length} others`, rest.reduce((sum, row) => sum + row[1], 0)]);
+  const sorted = falling.reverse();
   const chart = addChart(section, {
-    grid: { left: 8, right: 90, top: 8, bottom: 8, containLabel: true },
+    grid: { left: 24, right: 100, top: 8, bottom: 8, containLabel: true },
     tooltip: { trigger: "item", formatter: (item) => `${item.name}: ${label(item.value)}` },
     xAxis: { type: "value", axisLabel: { formatter: (value) => forPeople(value), hideOverlap: true } },
     yAxis: { type: "category", data: sorted.map((row) => row[0]), axisLabel: { width: 190, overflow: "truncate" } },

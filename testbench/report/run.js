@@ -99,7 +99,7 @@ function showRoofline(run, chip) {
     name: path.name, type: "line", showSymbol: false,
     data: [[low, low * path.peak], [roof.peak / path.peak, roof.peak], [high, roof.peak]] }));
   const points = roof.paths.map((path, i) => ({
-    name: `this run, bytes of ${path.name}`, type: "scatter", symbol: ["circle", "diamond", "triangle"][i % 3], symbolSize: 18 - 5 * i, itemStyle: { color: kColours[i], borderColor: "#000" },
+    name: `run, ${path.name} bytes`, type: "scatter", symbol: ["circle", "diamond", "triangle"][i % 3], symbolSize: 18 - 5 * i, itemStyle: { color: kColours[i], borderColor: "#000" },
     data: [[path.intensity, roof.flops]] }));
   addChart(section, {
     grid: { left: 8, right: 24, top: 60, bottom: 30, containLabel: true },

@@ -130,8 +130,9 @@ class Replay {
   }
 
   cn::MonoPlaces each_place(const cn::LaneMask& enabled) {
-    for (int pe = 0; pe < stream_.num_pes; ++pe)
-      if (enabled[pe]) places_[std::size_t(pe)] = calls_.number();
+    for (int strip = 0; strip < stream_.num_pes / cn::kStripLanes; ++strip)
+      for (unsigned bits = enabled.strip_bits(strip); bits != 0; bits &= bits - 1)
+        places_[std::size_t(strip * cn::kStripLanes + __builtin_ctz(bits))] = calls_.number();
     return cn::MonoPlaces::each(places_.data());
   }
 

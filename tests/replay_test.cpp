@@ -102,8 +102,10 @@ model::ParameterValue other_value(const model::ParameterInfo& parameter) {
     const std::int64_t other = value > range->low + 2 ? range->low + 2 : 5 * value + 2;
     return std::min(range->high, other / range->multiple_of * range->multiple_of);
   }
-  if (std::holds_alternative<model::RealRange>(parameter.allowed))
-    return std::get<double>(parameter.default_value) * 3.7 + 1.3;
+  if (const auto* const range = std::get_if<model::RealRange>(&parameter.allowed)) {
+    const double value = std::get<double>(parameter.default_value);
+    return 3.7 * value + 1.3 <= range->high ? 3.7 * value + 1.3 : (range->low + value) / 2;
+  }
   if (const auto* const flag = std::get_if<bool>(&parameter.default_value)) return !*flag;
   const auto& names = std::get<model::Choice>(parameter.allowed);
   return std::string(names[0] == std::get<std::string>(parameter.default_value) ? names[1] : names[0]);

@@ -102,8 +102,8 @@ function showRoofline(run, chip) {
     name: `run, ${path.name} bytes`, type: "scatter", symbol: ["circle", "diamond", "triangle"][i % 3], symbolSize: 18 - 5 * i, itemStyle: { color: kColours[i], borderColor: "#000" },
     data: [[path.intensity, roof.flops]] }));
   addChart(section, {
-    grid: { left: 8, right: 24, top: 60, bottom: 30, containLabel: true },
-    legend: { top: 0 },
+    grid: { left: 8, right: 24, top: 64, bottom: 30, containLabel: true },
+    legend: { top: 0, type: "scroll" },
     tooltip: { trigger: "item", formatter: (item) => `${item.seriesName}: ${forPeople(item.value[0])} flop/byte, ${forPeople(item.value[1], "flop/s")}` },
     xAxis: { type: "log", min: low, max: high, name: "flop/byte", nameLocation: "middle", nameGap: 26 },
     yAxis: { type: "log", min: 10 ** Math.floor(Math.log10(roof.flops / 3)), max: 10 ** Math.ceil(Math.log10(roof.peak)),

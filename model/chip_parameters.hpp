@@ -53,7 +53,13 @@ using Choice = std::vector<std::string_view>;
 using Allowed =
     std::variant<TrueOrFalse, IntegerRange, RealRange, Choice>;  // alternatives as in ParameterValue
 
-/// One parameter: the only declaration of its key, default, range and source.
+/// How far a parameter reaches.
+enum class Effect : std::uint8_t {
+  timing,  ///< when things happen: what the firmware asks of its machine, and so the image, stays the same
+  stream,  ///< also what the firmware asks of its machine
+};
+
+/// One parameter: the only declaration of its key, default, range, source and effect.
 struct ParameterInfo {
   std::string key;   ///< "pio.setup_cycles": group and field of ChipConfig
   std::string unit;  ///< "-" for a number without one
@@ -64,6 +70,8 @@ struct ParameterInfo {
 
   ParameterValue (*read)(const ChipConfig&);
   void (*write)(ChipConfig&, const ParameterValue&);  ///< unchecked
+
+  Effect effect = Effect::timing;
 };
 
 /// Every parameter, those of a group one after the other.

@@ -77,7 +77,7 @@ Cycles DmaEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
   request.addresses.pieces.describe(transfer, poly_.num_pes(), rules_);
   cn::Transfer of_copied_addresses = transfer;  // a scatter may overwrite a table of addresses
   of_copied_addresses.mono = request.addresses.pieces.places();
-  mono_.move(of_copied_addresses, *mono_socket.operator->());
+  if (!leaves_data_) mono_.move(of_copied_addresses, *mono_socket.operator->());
   if (at_) at_->refresh_writes_on_the_way();
   queue_.push({request.id, transfer.direction, accepted, slot});
   start_due(accepted);

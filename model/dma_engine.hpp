@@ -57,6 +57,8 @@ class DmaEngine : public sc_core::sc_module, public PioPort {
   std::uint64_t words_moved_before(Cycles cycle) const override;
 
   void set_observer(PioObserver* observer) { observer_ = observer; }
+  /// From now on requests take their time but move nothing: for firmware that looks at no data.
+  void leave_data(bool leave) { leaves_data_ = leave; }
   const PioStatistics& statistics() const { return statistics_; }
   int queue_depth() const { return queue_.waiting(); }
 
@@ -125,6 +127,7 @@ class DmaEngine : public sc_core::sc_module, public PioPort {
   sc_core::sc_event progress_;            ///< a request has started or is over
   std::exception_ptr failure_;
 
+  bool leaves_data_ = false;
   PioObserver* observer_ = nullptr;
   PioStatistics statistics_;
 };

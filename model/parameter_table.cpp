@@ -68,6 +68,12 @@ ParameterInfo real(std::string key, std::string unit, double default_value, Real
           confidence,     std::move(meaning), &F::read,      &F::write};
 }
 
+/// Of what firmware sees: another value lets it do other things, not only at other times.
+ParameterInfo seen_by_firmware(ParameterInfo parameter) {
+  parameter.effect = Effect::stream;
+  return parameter;
+}
+
 /// An entry of the cost table.
 template <InstructionClass c>
 ParameterInfo cycles(double default_value, Confidence confidence, std::string meaning) {
@@ -94,17 +100,17 @@ void declare_chip(Parameters& table) {
   table.push_back(real<group, &Chip::clock_hz>("chip.clock_hz", "Hz", 210e6, {1e6, 1e10}, Confidence::stated,
                                                "clock of the chip and of its memory interface; shipped "
                                                "X620/e620 boards 210 MHz [S7], design 250 MHz [S5]"));
-  table.push_back(integer<group, &Chip::pes>("chip.pes", "PEs", 96,
-                                             {cn::kStripLanes, cn::kMaxPes, cn::kStripLanes},
-                                             Confidence::vendor, "processing elements of the array [S1]"));
+  table.push_back(seen_by_firmware(
+      integer<group, &Chip::pes>("chip.pes", "PEs", 96, {cn::kStripLanes, cn::kMaxPes, cn::kStripLanes},
+                                 Confidence::vendor, "processing elements of the array [S1]")));
 }
 
 void declare_poly(Parameters& table) {
   constexpr auto group = &ChipConfig::poly;
   using Poly = ChipConfig::Poly;
-  table.push_back(integer<group, &Poly::sram_bytes>(
+  table.push_back(seen_by_firmware(integer<group, &Poly::sram_bytes>(
       "poly.sram_bytes", "bytes/PE", 6144, {64, 262144, 8}, Confidence::vendor,
-      "local memory of a PE [S5, S7]; the top 16 bytes are reserved by the ABI [S3]"));
+      "local memory of a PE [S5, S7]; the top 16 bytes are reserved by the ABI [S3]")));
   table.push_back(real<group, &Poly::code_quality_factor>(
       "poly.code_quality_factor", "-", 1, {0.01, 100}, Confidence::assumed,
       "cycles of code, poly or mono, = this x (instructions . cost table); 1 takes the table as it is"));

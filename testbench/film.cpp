@@ -1,14 +1,13 @@
 #include "testbench/film.hpp"
 
-#include <openssl/evp.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
 
 #include "model/huge_pages.hpp"
+#include "testbench/digest.hpp"
 #include "testbench/error.hpp"
 
 namespace testbench {
@@ -182,24 +181,13 @@ std::vector<double> Film::rgb() const {
 }
 
 std::string Film::sha256() const {
-  std::vector<unsigned char> bytes;
+  std::string bytes;
   for (const double value : rgb()) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
-    for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<unsigned char>(bits >> shift));
+    for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<char>(bits >> shift));
   }
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int length = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) {
-    throw RunError("OpenSSL could not compute SHA-256");
-  }
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (unsigned int i = 0; i < length; ++i) {
-    text += kDigits[digest[i] >> 4];
-    text += kDigits[digest[i] & 15];
-  }
-  return text;
+  return testbench::sha256({bytes.data(), bytes.size()});
 }
 
 double film_scale(const Scene& scene) {

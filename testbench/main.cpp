@@ -23,6 +23,8 @@ int run(int argc, char** argv) {
   testbench::add_bench_command(app);
   testbench::add_validate_command(app);
   testbench::add_waves_command(app);
+  testbench::add_sweep_command(app);
+  testbench::add_report_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -1,10 +1,12 @@
 #include "testbench/processes.hpp"
 
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -80,9 +82,11 @@ std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
   int ends[2];
   if (pipe(ends) != 0) throw RunError(std::string("cannot make a pipe: ") + std::strerror(errno));
   std::fflush(nullptr);
+  const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) throw RunError(std::string("cannot start a process: ") + std::strerror(errno));
   if (child == 0) {
+    end_with(parent);
     close(ends[0]);
     run_child(job, ends[1]);
   }
@@ -91,6 +95,11 @@ std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
 }
 
 }  // namespace
+
+void end_with(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(run_error);  // it ended before this call
+}
 
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,
                                           const std::function<void(int finished)>& done) {

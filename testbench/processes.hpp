@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -12,5 +14,8 @@ namespace testbench {
 /// each job.
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,
                                           const std::function<void(int finished)>& done = {});
+
+/// In a child process: from now on it is killed when `parent` ends, however that ends.
+void end_with(pid_t parent);
 
 }  // namespace testbench

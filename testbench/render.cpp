@@ -1,6 +1,7 @@
 #include "testbench/render.hpp"
 
 #include <cstring>
+#include <memory>
 
 #include "firmware/path_tracer/path_tracer.hpp"
 #include "model/hazard_checker.hpp"
@@ -11,6 +12,7 @@
 #include "testbench/native_machine.hpp"
 #include "testbench/observation.hpp"
 #include "testbench/results.hpp"
+#include "testbench/sweep/recording_machine.hpp"
 
 namespace testbench {
 namespace {
@@ -28,12 +30,6 @@ auto with_input_errors(Work&& work) {
   } catch (const cn::MachineFault& fault) {
     throw RunError(fault.what());
   }
-}
-
-void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) {
-  if (image.layout.total_bytes <= chip.ddr.size_bytes) return;
-  throw InputError("scene and bins need " + std::to_string(image.layout.total_bytes) +
-                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
 }
 
 /// Keeps the count of paths and the wish to stop between the firmware and the caller.
@@ -111,7 +107,21 @@ class Run {
   HostTimer timer_;
 };
 
+/// A machine without a clock; a recording one where a stream is wanted.
+std::unique_ptr<NativeMachine> native_machine(const model::ChipConfig& chip, std::uint64_t mono_bytes,
+                                              TimingStream* record) {
+  if (record == nullptr)
+    return std::make_unique<NativeMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes);
+  return std::make_unique<RecordingMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, *record);
+}
+
 }  // namespace
+
+void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) {
+  if (image.layout.total_bytes <= chip.ddr.size_bytes) return;
+  throw InputError("scene and bins need " + std::to_string(image.layout.total_bytes) +
+                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
+}
 
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
                             const RenderProgress& progress) {
@@ -132,12 +142,13 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
   });
 }
 
-RenderResult render_natively(const Scene& scene, const RenderOptions& options,
-                             const RenderProgress& progress) {
+RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress,
+                             TimingStream* record) {
   return with_input_errors([&] {
     Run run(scene, options, progress);
     const path_tracer::Layout& layout = run.image().layout;
-    NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, layout.total_bytes);
+    const std::unique_ptr<NativeMachine> owned = native_machine(options.chip, layout.total_bytes, record);
+    NativeMachine& machine = *owned;
     std::memcpy(machine.mono(), run.image().bytes.data(), run.image().bytes.size());
     ResultReader results(layout, run.result().film);
     model::HazardChecker* const checker = run.check_hazards(machine, {});
@@ -149,6 +160,7 @@ RenderResult render_natively(const Scene& scene, const RenderOptions& options,
       machine.sem_signal(path_tracer::HostSemaphores::kResultsFree);
     });
     run.firmware(machine);
+    if (auto* const recording = dynamic_cast<RecordingMachine*>(&machine)) recording->finish();
     return run.finish();
   });
 }

@@ -10,10 +10,13 @@
 #include "model/timing_style.hpp"
 #include "testbench/chip_statistics.hpp"
 #include "testbench/film.hpp"
+#include "testbench/mono_image.hpp"
 #include "testbench/observation_options.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
+
+class TimingStream;
 
 struct RenderOptions {
   model::ChipConfig chip;
@@ -44,9 +47,13 @@ using RenderProgress = std::function<bool(double share)>;
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
                             const RenderProgress& progress = {});
 
-/// The same firmware without SystemC: the same image, no time.
+/// The same firmware without SystemC: the same image, no time. What the firmware asks of its machine is added
+/// to `record`, an empty stream, unless it is null.
 RenderResult render_natively(const Scene& scene, const RenderOptions& options,
-                             const RenderProgress& progress = {});
+                             const RenderProgress& progress = {}, TimingStream* record = nullptr);
+
+/// Throws InputError when scene and bins need more mono memory than the chip has.
+void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip);
 
 /// Throws RunError if what was to be observed could not be written.
 void require_observed(const RenderResult& result);

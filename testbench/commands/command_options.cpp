@@ -1,7 +1,6 @@
 #include "testbench/commands/command_options.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
 #include "testbench/error.hpp"
+#include "testbench/film_size.hpp"
 #include "testbench/program_names.hpp"
 #include "testbench/render.hpp"
 #include "testbench/scene/scene_file.hpp"
@@ -17,19 +17,10 @@
 namespace testbench {
 namespace {
 
-constexpr int kMaxFilmSide = 16384;
-
 /// "480x480".
 FilmSize parse_size(const std::string& text) {
-  long long width = 0;
-  long long height = 0;
-  char end = 0;
-  const bool two_numbers = std::sscanf(text.c_str(), "%lldx%lld%c", &width, &height, &end) == 2;
-  const auto allowed = [](long long side) { return side >= 1 && side <= kMaxFilmSide; };
-  if (!two_numbers || !allowed(width) || !allowed(height))
-    throw InputError("--size: found '" + text + "', allowed is WIDTHxHEIGHT, each 1 to " +
-                     std::to_string(kMaxFilmSide));
-  return {static_cast<int>(width), static_cast<int>(height)};
+  if (const std::optional<FilmSize> size = parse_film_size(text)) return *size;
+  throw InputError("--size: found '" + text + "', allowed is " + allowed_film_size());
 }
 
 }  // namespace
@@ -129,12 +120,6 @@ Scene load_scene_for_film(const std::string& path, const std::string& size) {
   Scene loaded = load_scene(path);
   if (film) loaded.film = *film;
   return loaded;
-}
-
-void choose_best_sampling(path_tracer::ProgramConfig& program) {
-  program.sampler = path_tracer::Sampler::sobol;
-  program.light_sampling = path_tracer::LightSampling::solid_angle;
-  program.roulette_start = kRouletteStart;
 }
 
 void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program) {

@@ -8,6 +8,7 @@
 #include "firmware/path_tracer/kernels.hpp"
 #include "model/chip_config.hpp"
 #include "model/timing_style.hpp"
+#include "testbench/sampling_choice.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
@@ -74,12 +75,6 @@ void add_check_hazards_flag(CLI::App& command, bool& check_hazards);
 
 /// Loads a scene; `size`, "480x480", takes the place of its film's unless it is empty. Throws InputError.
 Scene load_scene_for_film(const std::string& path, const std::string& size);
-
-/// Segments without roulette that give the least error for the time (`csx600 bench error`, Cornell box).
-inline constexpr int kRouletteStart = 3;
-
-/// Sobol points, lights by solid angle, roulette from kRouletteStart on: the least error for the time.
-void choose_best_sampling(path_tracer::ProgramConfig& program);
 
 /// How paths are sampled: --sampler, --light-sampling, --roulette-start, --max-survival, --seed. The defaults
 /// are the values in `program`.

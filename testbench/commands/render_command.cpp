@@ -12,6 +12,7 @@
 #include "testbench/interrupt.hpp"
 #include "testbench/observation.hpp"
 #include "testbench/progress_bar.hpp"
+#include "testbench/rank_render.hpp"
 #include "testbench/render_report.hpp"
 #include "testbench/scene/scene_file.hpp"
 
@@ -35,6 +36,7 @@ struct RenderCommand {
   ObservationOption observation;
 
   void run();
+  void run_on_ranks(Ranks& ranks);
 
  private:
   void require_writable_outputs() const;
@@ -81,7 +83,54 @@ void RenderCommand::write_outputs(const RenderRequest& request, const RenderResu
     write_bytes_atomically(statistics, render_statistics(request, result).dump(2) + "\n");
 }
 
+/// Each rank renders its share of the samples on a machine of its own.
+void RenderCommand::run_on_ranks(Ranks& ranks) {
+  std::string error;
+  RenderRequest request;
+  std::optional<Scene> loaded;
+  try {
+    request = make_request();
+    if (observation.any())
+      throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
+    if (ranks.is_first()) require_writable_outputs();
+    loaded = load_scene_for_film(scene, size);
+  } catch (const InputError& wrong) {
+    error = wrong.what();
+  }
+  for (const std::string& of_rank : ranks.exchange(error))
+    if (!of_rank.empty() && ranks.is_first())
+      throw InputError(of_rank);
+    else if (!of_rank.empty())
+      return;
+  const InterruptGuard interrupt;
+  const std::optional<RankRender> render = [&] {
+    std::optional<ProgressBar> bar;
+    if (ranks.is_first()) bar.emplace("render (ranks)");
+    return render_on_ranks(ranks, *loaded, request, [&](double share) {
+      if (bar) bar->show(share);
+      return !interrupt.requested();
+    });
+  }();
+  if (!render) return;
+  const std::map<std::string, std::string> provenance = {
+      {"csx600.scene", scene},
+      {"csx600.ranks", std::to_string(ranks.size())},
+      {"csx600.segments", std::to_string(render->segments)},
+      {"csx600.image_sha256", render->film.sha256()}};
+  if (!exr.empty()) write_exr(exr, render->film, provenance);
+  if (!png.empty()) write_png(png, render->film);
+  if (!statistics.empty()) write_bytes_atomically(statistics, render->statistics.dump(2) + "\n");
+  std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments", loaded->name.c_str(),
+              loaded->film.width, loaded->film.height, request.options.work.samples, ranks.size(),
+              static_cast<unsigned long long>(render->segments));
+  if (render->simulated_seconds)
+    std::printf(", %.6f s simulated on the chip that took longest", *render->simulated_seconds);
+  std::printf(", %.2f s CPU\n", render->cpu_seconds);
+}
+
 void RenderCommand::run() {
+  Ranks ranks;
+  if (!ranks.alone()) return run_on_ranks(ranks);
   const RenderRequest request = make_request();
   require_writable_outputs();
   require_writable(request.options.observation, request.options.chip);

@@ -1,0 +1,34 @@
+#include <cstdio>
+#include <memory>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/commands.hpp"
+#include "testbench/report/report_page.hpp"
+
+namespace testbench {
+namespace {
+
+struct ReportCommand {
+  std::string input;
+  std::string image;
+  std::string output = "report.html";
+
+  void run() const {
+    require_writable(output);
+    write_bytes_atomically(output, report_page(input, image));
+    std::printf("%s: one page that opens offline\n", output.c_str());
+  }
+};
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("report", "Show a run or a sweep as one page for a browser");
+  const auto state = std::make_shared<ReportCommand>();
+  command.add_option("input", state->input, "Statistics file of a run, or directory of a sweep")->required();
+  command.add_option("--image", state->image, "PNG of the run to show");
+  command.add_option("-o,--output", state->output, "HTML file to write")->capture_default_str();
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/command_options.hpp"
+#include "testbench/commands/commands.hpp"
+#include "testbench/error.hpp"
+#include "testbench/interrupt.hpp"
+#include "testbench/progress_bar.hpp"
+#include "testbench/sweep/sweep_run.hpp"
+#include "testbench/sweep/sweep_table.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr int kFailuresShown = 5;
+
+struct SweepCommand {
+  std::string file;
+  std::string output;
+  std::vector<std::string> settings;
+  bool in_full = false;
+  bool retry_failed = false;
+  int jobs = 1;
+  const CLI::Option* jobs_option = nullptr;
+
+  void run();
+
+ private:
+  std::vector<Setting> overrides() const;
+  /// Throws InputError on the first rank when any rank cannot; the others get none then.
+  std::unique_ptr<Sweep> read(Ranks& ranks) const;
+  void run_first(const Sweep& sweep, Ranks& ranks) const;
+  void forget_failed(const Sweep& sweep, PointStore& store) const;
+  void write_tables(const fs::path& directory, const Sweep& sweep, const PointStore& store) const;
+};
+
+std::vector<Setting> SweepCommand::overrides() const {
+  std::vector<Setting> result;
+  for (const std::string& text : settings) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) throw InputError("--set: found '" + text + "', allowed is key=value");
+    result.push_back({text.substr(0, equals), text.substr(equals + 1), "--set"});
+  }
+  return result;
+}
+
+std::unique_ptr<Sweep> SweepCommand::read(Ranks& ranks) const {
+  std::unique_ptr<Sweep> sweep;
+  std::string error;
+  try {
+    if (!ranks.alone() && jobs_option->count() > 0)
+      throw InputError("--jobs: found under mpirun, where each rank runs one point at a time; leave it out");
+    sweep = std::make_unique<Sweep>(load_sweep_file(file), overrides());
+  } catch (const InputError& wrong) {
+    error = wrong.what();
+  }
+  for (const std::string& of_rank : ranks.exchange(error)) {
+    if (of_rank.empty()) continue;
+    if (ranks.is_first()) throw InputError(of_rank);
+    return nullptr;  // the first rank says it
+  }
+  return sweep;
+}
+
+void SweepCommand::forget_failed(const Sweep& sweep, PointStore& store) const {
+  for (const SweepPoint& point : sweep.points())
+    if (const Json* const line = store.find(point.id); line != nullptr && (*line)["status"] == "failed")
+      store.forget(point.id);
+}
+
+void SweepCommand::write_tables(const fs::path& directory, const Sweep& sweep,
+                                const PointStore& store) const {
+  const Json json = sweep_json(sweep, store);
+  write_bytes_atomically(directory / "sweep.json", json.dump(1) + "\n");
+  write_bytes_atomically(directory / "sweep.csv", sweep_csv(json));
+}
+
+struct Counts {
+  std::size_t done = 0;
+  std::size_t replayed = 0;
+  std::size_t audited = 0;
+  std::size_t failed = 0;
+};
+
+Counts count(const Sweep& sweep, const PointStore& store) {
+  Counts counts;
+  for (const SweepPoint& point : sweep.points()) {
+    const Json* const line = store.find(point.id);
+    if (line == nullptr) continue;
+    if ((*line)["status"] == "done") {
+      ++counts.done;
+      counts.replayed += (*line)["how"] == "replayed";
+      counts.audited += (*line)["audited"] == true;
+    } else if (++counts.failed <= kFailuresShown) {
+      std::fprintf(stderr, "note: %s: %s\n", describe_point(sweep, point).c_str(),
+                   (*line)["error"].get<std::string>().c_str());
+    }
+  }
+  return counts;
+}
+
+std::size_t count_finished(const Sweep& sweep, const PointStore& store) {
+  return std::size_t(std::count_if(sweep.points().begin(), sweep.points().end(),
+                                   [&](const SweepPoint& point) { return store.find(point.id) != nullptr; }));
+}
+
+void SweepCommand::run_first(const Sweep& sweep, Ranks& ranks) const {
+  const fs::path directory = output.empty() ? fs::path(file).stem().string() + ".sweep" : output;
+  PointStore store(directory, build_digest());
+  for (const char* const name : {"sweep.json", "sweep.csv"}) require_writable(directory / name);
+  if (retry_failed) forget_failed(sweep, store);
+  const std::size_t before = count_finished(sweep, store);
+  const InterruptGuard interrupt;
+  const bool all = [&] {
+    ProgressBar bar("sweep");
+    return run_sweep(sweep, store, {jobs, in_full}, ranks, [&](double share) {
+      bar.show(share);
+      return !interrupt.requested();
+    });
+  }();
+  write_tables(directory, sweep, store);
+  const Counts counts = count(sweep, store);
+  const std::string finished = std::to_string(counts.done + counts.failed) + " of " +
+                               std::to_string(sweep.points().size()) + " points are finished in " +
+                               directory.string();
+  if (!all) throw RunError("interrupted; " + finished + "; the same command goes on");
+  std::printf(
+      "%zu points in %s: %zu done (%zu replayed, %zu of them audited in full), %zu failed; %zu were there\n",
+      sweep.points().size(), directory.c_str(), counts.done, counts.replayed, counts.audited, counts.failed,
+      before);
+  if (counts.failed > 0)
+    throw RunError(std::to_string(counts.failed) + " of " + std::to_string(sweep.points().size()) +
+                   " points failed; sweep.csv says why");
+}
+
+/// The other ranks wait for points: an error of the first one must not leave them waiting.
+void SweepCommand::run() {
+  Ranks ranks;
+  const std::unique_ptr<Sweep> sweep = read(ranks);
+  if (!sweep) return;
+  if (!ranks.is_first()) return serve_sweep(*sweep, ranks);
+  if (ranks.alone()) return run_first(*sweep, ranks);
+  jobs = 1;
+  try {
+    run_first(*sweep, ranks);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "csx600: %s\n", error.what());
+    ranks.abort(dynamic_cast<const InputError*>(&error) != nullptr ? 2 : 1);
+  }
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand(
+      "sweep", "Run every combination of parameters of a sweep file; a sweep that was stopped goes on");
+  const auto state = std::make_shared<SweepCommand>();
+  command.add_option("file", state->file, "TOML file with base values and axes")->required();
+  command.add_option(
+      "-o,--output", state->output,
+      "Directory for sweep.csv, sweep.json and points.jsonl (default: the file's name with .sweep)");
+  command.add_option("--set", state->settings, "One base value, key=value; may be repeated")
+      ->allow_extra_args(false);
+  add_jobs_option(command, state->jobs);
+  command.add_flag("--full", state->in_full, "Replay nothing: run every point in full");
+  command.add_flag("--retry-failed", state->retry_failed, "Run points again that failed");
+  state->jobs_option = command.get_option("--jobs");
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

@@ -1,0 +1,139 @@
+#include "testbench/report/report_page.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "testbench/error.hpp"
+#include "testbench/report/report_assets.hpp"
+#include "testbench/sweep/sweep_table.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr const char* kRunFormat = "csx600-statistics-1";
+
+std::string read_file(const fs::path& path, const char* allowed) {
+  std::ostringstream bytes;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || fs::is_directory(path) || !(bytes << stream.rdbuf()))
+    throw InputError(path.string() + ": found that it cannot be read (" +
+                     std::strerror(fs::is_directory(path) ? EISDIR : errno) + "); allowed: " + allowed);
+  return bytes.str();
+}
+
+Json parse(const fs::path& path) {
+  const std::string text =
+      read_file(path, "a statistics file of `csx600 render --stats` or a directory of `csx600 sweep`");
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded() || !json.is_object())
+    throw InputError(path.string() +
+                     ": found no JSON object; allowed: a file of `csx600 render --stats` or "
+                     "`csx600 sweep`");
+  const std::string format = json.contains("format") && json["format"].is_string()
+                                 ? json["format"].get<std::string>()
+                                 : std::string("none");
+  if (format != kRunFormat && format != kSweepFormat)
+    throw InputError(path.string() + ": format: found '" + format + "'; allowed: '" + kRunFormat + "', '" +
+                     kSweepFormat + "'");
+  return json;
+}
+
+/// What the page reads without asking.
+void require_parts(const fs::path& path, const Json& json) {
+  const bool is_sweep = json["format"] == kSweepFormat;
+  const std::vector<const char*> parts =
+      is_sweep ? std::vector<const char*>{"/keys", "/axes", "/base", "/points"}
+               : std::vector<const char*>{"/scene", "/firmware/samples", "/machine",      "/segments",
+                                          "/rays",  "/counts",           "/image_sha256", "/chip_config"};
+  std::vector<const char*> all = parts;
+  if (json.contains("chip"))
+    for (const char* const part : {"/chip/control_unit/cycles_by_cause", "/chip/pe_array/kernels",
+                                   "/chip/pio", "/chip/ddr", "/simulated_cycles"})
+      all.push_back(part);
+  for (const char* const part : all)
+    if (!json.contains(Json::json_pointer(part)))
+      throw InputError(path.string() + ": " + std::string(part).substr(1) +
+                       ": found none; allowed: all that `" +
+                       (is_sweep ? "csx600 sweep" : "csx600 render --stats") + "` writes");
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+std::string image_address(const std::string& image) {
+  constexpr const char* kAllowed = "a PNG file of `csx600 render --png`";
+  const std::string bytes = read_file(image, kAllowed);
+  if (bytes.rfind("\x89PNG\r\n\x1a\n", 0) != 0)
+    throw InputError("--image: " + image + ": found no PNG; allowed: " + kAllowed);
+  return "data:image/png;base64," + base64(bytes);
+}
+
+/// JSON as the content of a script, which "</" could end; "<" occurs within strings only.
+std::string for_script(const std::string& json) {
+  std::string safe;
+  for (const char c : json) safe += c == '<' ? "\\u003c" : std::string(1, c);
+  return safe;
+}
+
+std::string for_html(const std::string& text) {
+  std::string safe;
+  for (const char c : text) safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
+  return safe;
+}
+
+/// The page's places "{{NAME}}" filled, left to right; what is filled in is not looked through.
+std::string fill(std::string_view page,
+                 const std::vector<std::pair<std::string_view, std::string_view>>& places) {
+  std::string filled;
+  for (const auto& [name, content] : places) {
+    const std::string place = "{{" + std::string(name) + "}}";
+    const std::size_t at = page.find(place);
+    filled.append(page.substr(0, at)).append(content);
+    page.remove_prefix(at + place.size());
+  }
+  return filled.append(page);
+}
+
+}  // namespace
+
+std::string report_page(const std::string& run_or_sweep, const std::string& image) {
+  const fs::path path =
+      fs::is_directory(run_or_sweep) ? fs::path(run_or_sweep) / "sweep.json" : fs::path(run_or_sweep);
+  const Json json = parse(path);
+  require_parts(path, json);
+  const bool is_sweep = json["format"] == kSweepFormat;
+  if (is_sweep && !image.empty())
+    throw InputError("--image: found with a sweep; allowed: with one run's statistics");
+  const fs::path named = is_sweep ? fs::absolute(path).parent_path() : path;
+  const std::string title = (is_sweep ? "Sweep " : "Run ") + named.stem().string();
+  Json data = {{"title", title}, {is_sweep ? "sweep" : "run", json}};
+  if (!image.empty()) data["image"] = image_address(image);
+  namespace assets = report_assets;
+  return fill(assets::page_html(), {{"TITLE", for_html(title)},
+                                    {"STYLE", assets::page_css()},
+                                    {"DATA", for_script(data.dump(-1, ' ', true))},
+                                    {"LIBRARY", assets::echarts_js()},
+                                    {"COMMON", assets::common_js()},
+                                    {"RUN", assets::run_js()},
+                                    {"SWEEP", assets::sweep_js()}});
+}
+
+}  // namespace testbench

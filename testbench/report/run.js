@@ -1,0 +1,154 @@
+// One run: its statistics file, and its image if there is one.
+"use strict";
+
+const kCauses = {
+  poly: "kernels on the PE array", stolen: "kernels slowed down by PIO", mono: "mono instructions",
+  data_cache: "data cache misses", semaphore: "semaphores", transfer_call: "starting transfers",
+  wait_load: "waiting for loads", wait_save: "waiting for saves", wait_pio_queue: "PIO queue full",
+  wait_host: "waiting for the host", thread_switch: "thread switches",
+};
+
+/// A number of the file's chip parameters, which it holds as TOML.
+function chipParameter(run, group, name) {
+  const part = run.chip_config.split(/^\[/m).find((text) => text.startsWith(`${group}]`)) || "";
+  const found = part.match(new RegExp(`^${name} = ([-+.0-9eE]+)`, "m"));
+  return found ? Number(found[1]) : NaN;
+}
+
+function showFigures(run, chip) {
+  const figures = [
+    [forPeople(run.rays / run.simulated_seconds), "rays/s"],
+    [forPeople(run.segments / run.simulated_seconds), "path segments/s"],
+    [forPeople(run.simulated_seconds, "s"), "simulated"],
+    [forPeople(run.simulated_cycles), "cycles"],
+    [percent(chip.pe_utilisation), "of them kernels on the PE array"],
+    [percent(chip.simd_efficiency), "SIMD efficiency"],
+    [percent(chip.exposed_pio_share), "waiting for DMA"],
+    [forPeople(chip.ddr_bytes_per_second, "B/s"), "to and from DDR"],
+  ];
+  if (chip.energy) figures.push([forPeople(chip.energy.joules, "J"), "energy"], [forPeople(run.rays_per_joule), "rays/J"]);
+  addFigures(figures);
+}
+
+function showKernels(run, chip) {
+  const kernels = chip.pe_array.kernels;
+  const section = addSection("Kernels", "Cycles on the PE array, without those stolen by programmed I/O");
+  addBars(section, kernels.map((kernel) => [kernel.name, kernel.cycles]),
+          (cycles) => `${forPeople(cycles)} (${percent(cycles / run.simulated_cycles)})`);
+  const hasWaits = kernels.some((kernel) => "exposed_wait_cycles" in kernel);
+  addTable(section, ["kernel", "runs", "cycles", "SIMD efficiency", ...(hasWaits ? ["exposed wait"] : [])],
+           kernels.map((kernel) => [{ text: kernel.name }, kernel.runs, kernel.cycles, percent(kernel.simd_efficiency),
+                                    ...(hasWaits ? [kernel.exposed_wait_cycles] : [])]));
+}
+
+/// How full the ray bin is, pass by pass: what keeps PEs busy. Runs that did not count it show kernels only.
+function showTime(run, chip) {
+  const intervals = run.counts.rays_by_interval;
+  if (!Array.isArray(intervals) || intervals.length < 2) return;
+  const passes = run.counts.passes_per_interval;
+  const slots = chip.pes * run.firmware.bin_blocks;
+  const last = run.counts.passes - passes * (intervals.length - 1);
+  const section = addSection("Utilisation over time", "Share of the bins' slots that hold a ray, by pass through the bins");
+  addChart(section, {
+    grid: { left: 8, right: 16, top: 16, bottom: 30, containLabel: true },
+    tooltip: { trigger: "axis", formatter: (items) => `from pass ${forPeople(items[0].value[0])}: ${percent(items[0].value[1])}` },
+    xAxis: { type: "value", name: "pass", nameLocation: "middle", nameGap: 26, max: run.counts.passes },
+    yAxis: { type: "value", min: 0, max: 1, axisLabel: { formatter: percent } },
+    series: [{ type: "line", step: "end", showSymbol: false, areaStyle: { opacity: 0.25 },
+               data: intervals.map((rays, i) => [i * passes, rays / (slots * (i + 1 === intervals.length ? last : passes))]) }],
+  });
+}
+
+/// Operations a PE does for one instruction of a class; a routine or a divide is one.
+function flopsOf(kernel) {
+  if ("flops" in kernel) return kernel.flops;
+  let flops = 0;
+  for (const [name, count] of Object.entries(kernel.issued)) {
+    if (!/^fp(32|64)_/.test(name)) continue;
+    flops += count * (/vector4/.test(name) ? 4 : 1) * (/multiply_add/.test(name) ? 2 : 1);
+  }
+  return flops;
+}
+
+/// Floating-point work and the bytes behind it, against what arithmetic and each path could do at most (Williams,
+/// Waterman and Patterson, Roofline, 2009).
+function roofline(run, chip) {
+  if (chip.roofline) {
+    const roof = chip.roofline;
+    return { flops: roof.flops_per_second, peak: roof.peak_flops_per_second,
+             paths: ["pio", "clear_connect", "ddr"].filter((path) => roof[`peak_${path}_bytes_per_second`] > 0)
+               .map((path) => ({ name: path, peak: roof[`peak_${path}_bytes_per_second`], intensity: roof[`flops_per_${path}_byte`] })) };
+  }
+  const clock = chip.clock_hz;
+  const flops = chip.pes * chip.pe_array.kernels.reduce((sum, kernel) => sum + flopsOf(kernel) * kernel.simd_efficiency, 0);
+  const path = (name, bytes, group) => ({ name, peak: chipParameter(run, group, "bytes_per_cycle") * clock, intensity: flops / bytes });
+  return { flops: flops / run.simulated_seconds, peak: 2 * chip.pes * clock,
+           paths: [path("pio", chip.pio.bytes_mono_to_poly + chip.pio.bytes_poly_to_mono, "pio"),
+                   path("ddr", chip.ddr.bytes_read + chip.ddr.bytes_written, "ddr")] };
+}
+
+function showRoofline(run, chip) {
+  const roof = roofline(run, chip);
+  const intensities = roof.paths.flatMap((path) => [path.intensity, roof.peak / path.peak]).filter((x) => x > 0 && isFinite(x));
+  if (!(roof.flops > 0) || intensities.length === 0) return;
+  const low = 10 ** Math.floor(Math.log10(Math.min(...intensities) / 3));
+  const high = 10 ** Math.ceil(Math.log10(Math.max(...intensities) * 3));
+  const section = addSection("Roofline",
+    `${forPeople(roof.flops, "flop/s")} of at most ${forPeople(roof.peak, "flop/s")} (${percent(roof.flops / roof.peak)}); a path's slope is its bytes a second`);
+  const lines = roof.paths.map((path) => ({
+    name: path.name, type: "line", showSymbol: false,
+    data: [[low, low * path.peak], [roof.peak / path.peak, roof.peak], [high, roof.peak]] }));
+  const points = roof.paths.map((path, i) => ({
+    name: `run, ${path.name} bytes`, type: "scatter", symbol: ["circle", "diamond", "triangle"][i % 3], symbolSize: 18 - 5 * i, itemStyle: { color: kColours[i], borderColor: "#000" },
+    data: [[path.intensity, roof.flops]] }));
+  addChart(section, {
+    grid: { left: 8, right: 24, top: 64, bottom: 30, containLabel: true },
+    legend: { top: 0, type: "scroll" },
+    tooltip: { trigger: "item", formatter: (item) => `${item.seriesName}: ${forPeople(item.value[0])} flop/byte, ${forPeople(item.value[1], "flop/s")}` },
+    xAxis: { type: "log", min: low, max: high, name: "flop/byte", nameLocation: "middle", nameGap: 26 },
+    yAxis: { type: "log", min: 10 ** Math.floor(Math.log10(roof.flops / 3)), max: 10 ** Math.ceil(Math.log10(roof.peak)),
+             axisLabel: { formatter: (value) => forPeople(value) }, name: "flop/s" },
+    series: [...lines, ...points],
+  });
+}
+
+function showEnergy(chip) {
+  if (!chip.energy || !chip.energy.joules_by_cause) return;
+  const section = addSection("Energy", `${forPeople(chip.energy.joules, "J")}; first-order, from counters times the chip's table`);
+  addBars(section, Object.entries(chip.energy.joules_by_cause).map(([cause, joules]) => [cause.replaceAll("_", " "), joules]),
+          (joules) => `${forPeople(joules, "J")} (${percent(joules / chip.energy.joules)})`);
+}
+
+function showTransfers(chip) {
+  const section = addSection("Transfers and memory", "Counts of the programmed-I/O engine, the network and the DDR");
+  const rows = [];
+  const add = (name, counts) => {
+    for (const [key, value] of Object.entries(counts)) {
+      if (typeof value === "number") rows.push([{ text: `${name}, ${key.replaceAll("_", " ")}` }, value]);
+      else if (value && typeof value === "object") add(`${name} ${key}`, value);
+    }
+  };
+  for (const [name, key] of [["PIO", "pio"], ["network", "clear_connect"], ["DDR", "ddr"], ["host link", "host_link"]])
+    if (chip[key]) add(name, chip[key]);
+  addTable(section, ["count", "value"], rows);
+}
+
+function showRun(run, image) {
+  const firmware = run.firmware;
+  document.getElementById("subtitle").textContent =
+    `${run.scene}, ${run.width} x ${run.height}, ${firmware.samples} samples a pixel, program ${firmware.program}, n = ${firmware.n}, ` +
+    `buffering ${firmware.buffer}, ${run.machine === "native" ? "native: no time was simulated" : `chip ${run.chip_preset}`}`;
+  const chip = run.chip;
+  if (chip) showFigures(run, chip);
+  else addFigures([[forPeople(run.segments), "path segments"], [forPeople(run.rays), "rays"]]);
+  if (image) addSection("Image", `SHA-256 of its pixels ${run.image_sha256.slice(0, 16)}…`).append(element("img", { src: image, alt: "The image of this run" }));
+  if (!chip) return;
+  const cycles = addSection("Where the cycles went", "Every cycle of the control unit has one cause");
+  addBars(cycles, Object.entries(chip.control_unit.cycles_by_cause).map(([cause, value]) => [kCauses[cause] || cause, value]),
+          (value) => `${forPeople(value)} (${percent(value / run.simulated_cycles)})`);
+  showKernels(run, chip);
+  showTime(run, chip);
+  showRoofline(run, chip);
+  showEnergy(chip);
+  showTransfers(chip);
+}

@@ -1,0 +1,134 @@
+#include "testbench/sweep/point_store.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "testbench/digest.hpp"
+#include "testbench/error.hpp"
+
+namespace testbench {
+namespace {
+
+constexpr const char* kFormat = "csx600-sweep-points-1";
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+void make_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error || !std::filesystem::is_directory(directory))
+    throw InputError(directory.string() + ": output directory: found that it cannot be made (" +
+                     (error ? error.message() : std::string("not a directory")) +
+                     "); allowed: a directory that can be written to");
+}
+
+}  // namespace
+
+PointStore::PointStore(const std::filesystem::path& directory, const std::string& build)
+    : path_(directory / "points.jsonl"), build_(build) {
+  make_directory(directory);
+  descriptor_ = open(path_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0)
+    throw InputError(path_.string() + ": output file: found that it cannot be opened (" +
+                     std::strerror(errno) + "); allowed: a file that can be written to");
+  try {
+    lock();
+    read();
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+}
+
+PointStore::~PointStore() {
+  close(descriptor_);
+}
+
+/// The runs of a sweep that was killed hold the file a moment longer.
+void PointStore::lock() {
+  constexpr int kTries = 40;
+  for (int tries = 1; flock(descriptor_, LOCK_EX | LOCK_NB) != 0; ++tries) {
+    if (tries == kTries)
+      throw InputError(path_.string() + ": found a sweep that is writing to it; allowed: one at a time");
+    usleep(50'000);
+  }
+}
+
+void PointStore::read() {
+  const std::string text = read_file(path_);
+  const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+  if (whole < text.size() && ftruncate(descriptor_, off_t(whole)) != 0)
+    throw RunError(path_.string() + ": cannot be shortened: " + std::strerror(errno));
+  if (whole == 0) return append(Json{{"format", kFormat}, {"build", build_}}.dump());
+  std::istringstream lines(text.substr(0, whole));
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) take_line(line, ++number, build_);
+}
+
+void PointStore::take_line(const std::string& line, std::size_t number, const std::string& build) {
+  const std::string place = path_.string() + ":" + std::to_string(number) + ": ";
+  Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object())
+    throw InputError(place + "found no JSON object; allowed: a file that `csx600 sweep` wrote");
+  if (number == 1) {
+    const std::string format = json.value("format", "");
+    if (format != kFormat)
+      throw InputError(place + "format: found '" + format + "'; allowed: '" + kFormat + "'");
+    if (json.value("build", "") != build)
+      throw InputError(place +
+                       "build: found results of another build of csx600; allowed: this build's, or "
+                       "another directory (-o)");
+    return;
+  }
+  if (!json.contains("id") || !json["id"].is_string())
+    throw InputError(place + "id: found none; allowed: a file that `csx600 sweep` wrote");
+  const std::string id = json["id"];
+  points_[id] = std::move(json);
+}
+
+void PointStore::append(const std::string& line) {
+  const off_t before = lseek(descriptor_, 0, SEEK_END);
+  const std::string bytes = line + "\n";
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = write(descriptor_, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    written += std::size_t(count);
+  }
+  if (written == bytes.size() && fdatasync(descriptor_) == 0) return;
+  const std::string reason = std::strerror(errno);
+  if (ftruncate(descriptor_, before) != 0) {
+    // The next start drops the piece of a line.
+  }
+  throw RunError(path_.string() + ": cannot be written: " + reason);
+}
+
+const PointStore::Json* PointStore::find(const std::string& id) const {
+  const auto found = points_.find(id);
+  return found == points_.end() ? nullptr : &found->second;
+}
+
+void PointStore::add(const std::string& id, Json result) {
+  Json line = {{"id", id}};
+  line.update(result);
+  append(line.dump());
+  points_[id] = std::move(line);
+}
+
+std::string build_digest() {
+  return sha256(read_file("/proc/self/exe")).substr(0, 32);
+}
+
+}  // namespace testbench

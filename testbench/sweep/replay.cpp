@@ -1,0 +1,39 @@
+#include "testbench/sweep/replay.hpp"
+
+#include "testbench/error.hpp"
+#include "testbench/host_pc.hpp"
+#include "testbench/host_time.hpp"
+
+namespace testbench {
+
+Recording record_render(const Scene& scene, const RenderOptions& options) {
+  TimingStream stream;
+  RenderResult result = render_natively(scene, options, {}, &stream);
+  return {make_mono_image(scene, options.chip.chip.pes, options.program), std::move(stream),
+          std::move(result)};
+}
+
+RenderResult replay_on_chip(const Recording& recording, const RenderOptions& options) {
+  const HostTimer timer;
+  require_mono_memory(recording.image, options.chip);
+  RenderResult result = recording.result;
+  // The host fetches as many results as it would, but what it finds is of no use.
+  Film nobody_looks_at(result.film.size(), result.film.scale());
+  model::Csx600 chip("csx600", options.chip, options.timing);
+  HostPc host("host", chip, recording.image, nobody_looks_at);
+  chip.dma_engine.leave_data(true);
+  chip.control_unit.load([&](cn::Machine& machine) { recording.stream.replay(machine); });
+  try {
+    sc_core::sc_start();
+    chip.control_unit.require_finished();
+  } catch (const cn::MachineFault& fault) {
+    throw RunError(fault.what());
+  }
+  if (!host.finished()) throw RunError("the replayed firmware has ended, but the host has not");
+  result.chip = collect_statistics(chip, host.finished_cycle());
+  result.cpu_seconds = timer.cpu_seconds();
+  result.wall_seconds = timer.wall_seconds();
+  return result;
+}
+
+}  // namespace testbench

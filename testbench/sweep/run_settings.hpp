@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/chip_parameters.hpp"
+#include "testbench/render.hpp"
+
+namespace testbench {
+
+/// One key of a run and the value that it is given.
+struct Setting {
+  std::string key;
+  std::string value;
+  std::string origin;  ///< "sweep.toml:7"
+};
+
+/// Everything that makes a run, as far as keys reach.
+struct RunSettings {
+  std::string scene;
+  std::string chip = "csx600";  ///< preset or .toml file
+  std::string size;             ///< "WIDTHxHEIGHT"; "" for the scene's
+  RenderOptions options;        ///< of the chip, what `chip` and the chip's keys say
+};
+
+/// A key that is not one of the chip's. The only declaration of its name, its values and its effect.
+struct RunParameter {
+  std::string key;
+  std::string allowed;
+  model::Effect effect;
+  /// Returns false, and changes nothing, for a value that is not allowed.
+  bool (*write)(RunSettings&, const std::string& value);
+  std::string (*read)(const RunSettings&);
+};
+
+/// scene, chip, size, samples, timing and the firmware's. How many blocks are buffered (firmware.n,
+/// firmware.buffer) does not change the image, but the order in which the firmware asks for things.
+const std::vector<RunParameter>& run_parameter_table();
+
+/// nullptr for an unknown key.
+const RunParameter* find_run_parameter(const std::string& key);
+
+/// Throws InputError for an unknown key and for a value that its parameter does not take.
+void require_allowed(const Setting& setting);
+
+/// A run with the best sampling and these settings, in any order: the chip's own keys change the chip that
+/// `chip` names. Throws InputError for what require_allowed() refuses, and for values that do not fit each
+/// other.
+RunSettings make_settings(const std::vector<Setting>& settings);
+
+/// The value of every key; chip and firmware.
+std::string value_of(const RunSettings& settings, const std::string& key);
+
+/// Two runs of which these texts are equal ask the same of their machines (Effect::stream).
+std::string stream_inputs(const RunSettings& settings);
+
+/// Two runs of which these are equal are the same run; the scene's files are not looked at.
+std::string all_inputs(const RunSettings& settings);
+
+}  // namespace testbench

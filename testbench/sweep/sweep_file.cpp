@@ -1,0 +1,313 @@
+#include "testbench/sweep/sweep_file.hpp"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "testbench/error.hpp"
+
+namespace testbench {
+namespace {
+
+constexpr std::size_t kMostSteps = 100'000;
+
+std::string read_text(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || std::filesystem::is_directory(path) || !(text << stream.rdbuf()))
+    throw InputError(path + ": found that it cannot be read (" +
+                     std::strerror(std::filesystem::is_directory(path) ? EISDIR : errno) +
+                     "); allowed: a readable TOML file");
+  return text.str();
+}
+
+toml::table parse(const std::string& path) {
+  const std::string text = read_text(path);
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    throw InputError(path + ":" + std::to_string(error.source().begin.line) +
+                     ": not TOML: " + std::string(error.description()));
+  }
+}
+
+/// A number, a text or a flag as `--set` would be given it; nothing for anything else.
+std::optional<std::string> scalar(const toml::node& node) {
+  if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
+  if (const auto integer = node.value_exact<std::int64_t>()) return std::to_string(*integer);
+  if (const auto real = node.value_exact<double>()) return model::value_text(*real);
+  return node.value_exact<std::string>();
+}
+
+std::string found_text(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (node.is_array()) return "an array";
+  const std::optional<std::string> text = scalar(node);
+  return text ? "'" + *text + "'" : "a date or time";
+}
+
+/// Reads one file.
+class SweepReader {
+ public:
+  explicit SweepReader(const std::string& path) { sweep_.path = path; }
+
+  SweepFile read() {
+    const toml::table file = parse(sweep_.path);
+    for (const auto& [name, node] : file) {
+      const std::string key(name.str());
+      if (key == "axis") {
+        read_axes(node);
+      } else if (key == "audit") {
+        read_audit(node);
+      } else {
+        read_base(node, key);
+      }
+    }
+    require_keys_once();
+    require_few_points();
+    return std::move(sweep_);
+  }
+
+ private:
+  std::string line_of(const toml::node& node) const {
+    return sweep_.path + ":" + std::to_string(node.source().begin.line);
+  }
+  [[noreturn]] void refuse(const toml::node& node, const std::string& key, const std::string& found,
+                           const std::string& allowed) const {
+    throw InputError(line_of(node) + ": " + key + ": found " + found + "; allowed: " + allowed);
+  }
+
+  Setting setting(const toml::node& node, const std::string& key, const std::string& value) const {
+    Setting made{key, value, line_of(node)};
+    const bool names_file =
+        key == "scene" || (key == "chip" && std::filesystem::path(value).extension() == ".toml");
+    if (names_file && !std::filesystem::path(value).is_absolute())
+      made.value = (std::filesystem::path(sweep_.path).parent_path() / value).lexically_normal().string();
+    require_allowed(made);
+    return made;
+  }
+
+  void read_base(const toml::node& node, const std::string& key) {
+    if (const toml::table* const group = node.as_table()) {
+      for (const auto& [name, value] : *group) read_base(value, key + "." + std::string(name.str()));
+      return;
+    }
+    const std::optional<std::string> value = scalar(node);
+    if (!value) refuse(node, key, found_text(node), "one value; a list belongs in an [[axis]]");
+    sweep_.base.push_back(setting(node, key, *value));
+  }
+
+  void read_audit(const toml::node& node) {
+    const toml::table* const audit = node.as_table();
+    if (audit == nullptr) refuse(node, "audit", found_text(node), "audit.share and audit.seed");
+    for (const auto& [name, value] : *audit) {
+      const std::string key = "audit." + std::string(name.str());
+      if (key == "audit.share") {
+        const auto share = value.value<double>();
+        if (!share || !(*share >= 0 && *share <= 1))
+          refuse(value, key, found_text(value), "a number from 0 to 1");
+        sweep_.audit_share = *share;
+      } else if (key == "audit.seed") {
+        const auto seed = value.value_exact<std::int64_t>();
+        if (!seed || *seed < 0) refuse(value, key, found_text(value), "an integer of 0 or more");
+        sweep_.audit_seed = std::uint64_t(*seed);
+      } else {
+        refuse(value, key, "an unknown key", "audit.share and audit.seed");
+      }
+    }
+  }
+
+  void read_axes(const toml::node& node) {
+    const toml::array* const axes = node.as_array();
+    if (axes == nullptr || axes->empty() || !axes->is_array_of_tables())
+      refuse(node, "axis", found_text(node), "[[axis]], each with one key or more");
+    for (const toml::node& axis : *axes) {
+      sweep_.axes.emplace_back();
+      read_axis(*axis.as_table());
+      if (sweep_.axes.back().keys.empty()) refuse(axis, "axis", "no key", "one key or more");
+    }
+  }
+
+  static bool is_range(const toml::table& table) { return table.contains("from") || table.contains("to"); }
+
+  /// A key of an axis with its list or range.
+  struct Leaf {
+    std::string key;
+    const toml::node* node;
+  };
+
+  void collect(const toml::table& table, const std::string& prefix, std::vector<Leaf>& leaves) const {
+    for (const auto& [name, node] : table) {
+      const std::string key = prefix + std::string(name.str());
+      const toml::table* const group = node.as_table();
+      if (group != nullptr && !is_range(*group)) {
+        collect(*group, key + ".", leaves);
+      } else {
+        leaves.push_back({key, &node});
+      }
+    }
+  }
+
+  /// In the order of the file, which a TOML table does not keep.
+  void read_axis(const toml::table& table) {
+    std::vector<Leaf> leaves;
+    collect(table, "", leaves);
+    const auto place = [](const Leaf& leaf) {
+      const toml::source_position& begin = leaf.node->source().begin;
+      return std::make_pair(begin.line, begin.column);
+    };
+    std::stable_sort(leaves.begin(), leaves.end(),
+                     [&](const Leaf& a, const Leaf& b) { return place(a) < place(b); });
+    for (const auto& [key, node] : leaves) {
+      const toml::table* const as_range = node->as_table();
+      add_key(*node, key, as_range != nullptr ? range(*as_range, key) : list(*node, key));
+    }
+  }
+
+  void add_key(const toml::node& node, const std::string& key, const std::vector<std::string>& values) {
+    SweepAxis& axis = sweep_.axes.back();
+    if (axis.keys.empty()) axis.steps.resize(values.size());
+    if (values.size() != axis.steps.size())
+      refuse(node, key, std::to_string(values.size()) + " values",
+             std::to_string(axis.steps.size()) + ", as many as " + axis.keys.front() +
+                 " of the same axis has (keys of one axis change together)");
+    axis.keys.push_back(key);
+    for (std::size_t i = 0; i < values.size(); ++i) axis.steps[i].push_back(setting(node, key, values[i]));
+  }
+
+  std::vector<std::string> list(const toml::node& node, const std::string& key) const {
+    const toml::array* const array = node.as_array();
+    const std::string allowed = "a list of values, or { from, to } with step, factor or count";
+    if (array == nullptr) refuse(node, key, found_text(node), allowed);
+    if (array->empty()) refuse(node, key, "an empty list", allowed);
+    std::vector<std::string> values;
+    for (const toml::node& element : *array) {
+      const std::optional<std::string> value = scalar(element);
+      if (!value) refuse(element, key, found_text(element) + " in a list", "values");
+      if (std::find(values.begin(), values.end(), *value) != values.end() && sweep_.axes.back().keys.empty())
+        refuse(element, key, "'" + *value + "' twice", "each value once");
+      values.push_back(*value);
+    }
+    return values;
+  }
+
+  double number(const toml::table& table, const std::string& key, const char* name) const {
+    const toml::node* const node = table.get(name);
+    const std::optional<double> value = node != nullptr ? node->value<double>() : std::nullopt;
+    if (node == nullptr)
+      refuse(table, key, std::string("a range without ") + name, "{ from, to } and how to get there");
+    if (!value || !std::isfinite(*value))
+      refuse(*node, key + "." + name, found_text(*node), "a finite number");
+    return *value;
+  }
+
+  /// { from, to, step | factor | count }; with `count`, geometric = true for equal ratios.
+  std::vector<std::string> range(const toml::table& table, const std::string& key) const {
+    static const std::set<std::string> kNames = {"from", "to", "step", "factor", "count", "geometric"};
+    for (const auto& [name, node] : table)
+      if (kNames.count(std::string(name.str())) == 0)
+        refuse(node, key, "'" + std::string(name.str()) + "' in a range",
+               "from, to and one of step, factor, count");
+    if (table.contains("step") + table.contains("factor") + table.contains("count") != 1)
+      refuse(table, key, "a range with none or several of step, factor, count", "exactly one of them");
+    const double from = number(table, key, "from");
+    const double to = number(table, key, "to");
+    const bool whole = table["from"].is_integer() && table["to"].is_integer();
+    if (table.contains("step")) return stepped(table, key, from, to);
+    if (table.contains("factor")) return multiplied(table, key, from, to);
+    return counted(table, key, from, to, whole);
+  }
+
+  std::vector<std::string> stepped(const toml::table& table, const std::string& key, double from,
+                                   double to) const {
+    const double step = number(table, key, "step");
+    const double steps = (to - from) / step;
+    if (step == 0 || steps < 0 || steps >= kMostSteps)
+      refuse(table, key, "a step of " + model::value_text(step),
+             "one that leads from `from` to `to` in fewer than " + std::to_string(kMostSteps) + " steps");
+    std::vector<std::string> values;
+    for (int i = 0; i <= static_cast<int>(steps + 1e-9); ++i)
+      values.push_back(model::value_text(from + i * step));
+    return values;
+  }
+
+  std::vector<std::string> multiplied(const toml::table& table, const std::string& key, double from,
+                                      double to) const {
+    const double factor = number(table, key, "factor");
+    if (!(factor > 1) || !(from > 0) || to < from)
+      refuse(table, key, "a factor of " + model::value_text(factor),
+             "one above 1, from a positive number up to a larger one");
+    std::vector<std::string> values;
+    for (double value = from; value <= to * (1 + 1e-12); value *= factor) {
+      values.push_back(model::value_text(value));
+      if (values.size() > kMostSteps)
+        refuse(table, key, "more steps", "at most " + std::to_string(kMostSteps));
+    }
+    return values;
+  }
+
+  std::vector<std::string> counted(const toml::table& table, const std::string& key, double from, double to,
+                                   bool whole) const {
+    const double count = number(table, key, "count");
+    const bool geometric = table["geometric"].value_or(false);
+    if (count < 2 || count > kMostSteps || count != std::floor(count))
+      refuse(table, key, "a count of " + model::value_text(count),
+             "an integer from 2 to " + std::to_string(kMostSteps));
+    if (geometric && !(from > 0 && to > 0))
+      refuse(table, key, "geometric steps from or to a number that is not positive", "positive numbers");
+    std::vector<std::string> values;
+    for (int i = 0; i < static_cast<int>(count); ++i) {
+      const double share = i / (count - 1);
+      const double value = geometric ? from * std::pow(to / from, share) : from + (to - from) * share;
+      std::string text = model::value_text(whole ? std::round(value) : value);
+      if (values.empty() || values.back() != text) values.push_back(std::move(text));
+    }
+    return values;
+  }
+
+  void require_keys_once() const {
+    std::set<std::string> seen;
+    for (const Setting& setting : sweep_.base) seen.insert(setting.key);
+    for (const SweepAxis& axis : sweep_.axes)
+      for (const Setting& setting : axis.steps.front())
+        if (!seen.insert(setting.key).second)
+          throw InputError(setting.origin + ": " + setting.key +
+                           ": found twice in the sweep; allowed: once, as a value or on an axis");
+  }
+
+  void require_few_points() const {
+    double points = 1;
+    for (const SweepAxis& axis : sweep_.axes) points *= double(axis.steps.size());
+    if (points > double(kMostSweepPoints))
+      throw InputError(sweep_.path + ": axis: found a product of " + model::value_text(points) +
+                       " points; allowed: at most " + std::to_string(kMostSweepPoints));
+  }
+
+  SweepFile sweep_;
+};
+
+}  // namespace
+
+std::vector<std::string> SweepFile::keys() const {
+  std::vector<std::string> all;
+  for (const SweepAxis& axis : axes) all.insert(all.end(), axis.keys.begin(), axis.keys.end());
+  return all;
+}
+
+std::uint64_t SweepFile::points() const {
+  std::uint64_t product = 1;
+  for (const SweepAxis& axis : axes) product *= axis.steps.size();
+  return product;
+}
+
+SweepFile load_sweep_file(const std::string& path) {
+  return SweepReader(path).read();
+}
+
+}  // namespace testbench

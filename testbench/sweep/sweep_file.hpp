@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "testbench/sweep/run_settings.hpp"
+
+namespace testbench {
+
+/// Keys that change together; the axes of a sweep are multiplied.
+struct SweepAxis {
+  std::vector<std::string> keys;
+  std::vector<std::vector<Setting>> steps;  ///< in each, one setting a key
+};
+
+/// A sweep as its file says it:
+///
+///     scene = "../scenes/cornell_box"        # files: from where the sweep's own file lies
+///     chip = "paper"                         # any key of a run or of the chip, one value
+///     samples = 4
+///     pio.setup_cycles = 200
+///     audit.share = 0.05                     # of the replayed points, run in full as well
+///     audit.seed = 1                         # which ones
+///
+///     [[axis]]
+///     firmware.n = [0, 1, 2, 3]              # a list
+///     [[axis]]
+///     pio.per_pe_cycles = { from = 4, to = 60, step = 8 }
+///     [[axis]]                               # keys of one axis change together
+///     chip.pes = { from = 16, to = 1024, factor = 2 }
+///     ddr.banks = { from = 1, to = 8, count = 7 }     # evenly; or geometric = true
+struct SweepFile {
+  std::string path;
+  std::vector<Setting> base;
+  std::vector<SweepAxis> axes;
+  double audit_share = 0.05;
+  std::uint64_t audit_seed = 1;
+
+  std::vector<std::string> keys() const;  ///< of all axes, in order
+  std::uint64_t points() const;
+};
+
+inline constexpr std::uint64_t kMostSweepPoints = 1'000'000;
+
+/// Throws InputError that names the file, the line, the key, what was found and what is allowed.
+SweepFile load_sweep_file(const std::string& path);
+
+}  // namespace testbench

@@ -1,0 +1,105 @@
+#include "testbench/sweep/sweep_points.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "testbench/digest.hpp"
+#include "testbench/error.hpp"
+#include "testbench/film_size.hpp"
+#include "testbench/mono_image.hpp"
+#include "testbench/scene/scene_file.hpp"
+
+namespace testbench {
+namespace {
+
+constexpr std::size_t kIdDigits = 32;
+
+std::string short_digest(const std::string& text) {
+  return sha256(text).substr(0, kIdDigits);
+}
+
+/// Decided by the point and the seed alone: whoever runs it, and however often, audits the same points.
+bool is_audited(const std::string& id, const SweepFile& file) {
+  const std::string digest = sha256(id + std::to_string(file.audit_seed)).substr(0, 13);
+  const double share = double(std::strtoull(digest.c_str(), nullptr, 16)) / double(std::uint64_t{1} << 52);
+  return share < file.audit_share;
+}
+
+/// What the firmware sees of a scene: the host's image of it, for a firmware that all scenes share.
+std::string scene_digest(const Scene& scene) {
+  const MonoImage image = make_mono_image(scene, cn::kStripLanes, path_tracer::ProgramConfig());
+  return sha256({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
+}
+
+}  // namespace
+
+Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides)
+    : keys_(file.keys()), base_(file.base) {
+  for (const SweepAxis& axis : file.axes) axes_.push_back(axis.keys);
+  for (const Setting& setting : overrides) {
+    require_allowed(setting);
+    if (std::find(keys_.begin(), keys_.end(), setting.key) != keys_.end())
+      throw InputError(setting.origin + ": found '" + setting.key +
+                       "', which is on an axis; allowed: other keys");
+    const auto is_same = [&](const Setting& other) { return other.key == setting.key; };
+    base_.erase(std::remove_if(base_.begin(), base_.end(), is_same), base_.end());
+    base_.push_back(setting);
+  }
+  for (std::uint64_t number = 0; number < file.points(); ++number)
+    points_.push_back(make_point(file, number));
+  const auto cannot_run = [](const SweepPoint& point) { return !point.error.empty(); };
+  if (std::all_of(points_.begin(), points_.end(), cannot_run)) throw InputError(points_.front().error);
+}
+
+SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
+  SweepPoint point;
+  std::vector<Setting> settings = base_;
+  std::uint64_t rest = number;  // the last axis runs fastest
+  std::uint64_t weight = file.points();
+  for (const SweepAxis& axis : file.axes) {
+    weight /= axis.steps.size();
+    const std::vector<Setting>& step = axis.steps[rest / weight];
+    rest %= weight;
+    settings.insert(settings.end(), step.begin(), step.end());
+    for (const Setting& setting : step) point.inputs.push_back(setting.value);
+  }
+  std::optional<RunSettings> run;
+  try {
+    run = make_settings(settings);
+  } catch (const InputError& error) {
+    point.error = error.what();
+    std::string inputs;
+    for (const Setting& setting : settings) inputs += setting.key + " = " + setting.value + "\n";
+    point.id = short_digest(inputs);
+    return point;
+  }
+  const LoadedScene& loaded = scene_of(*run);
+  point.scene = &loaded.scene;
+  point.request = {run->scene, run->options, false};
+  point.id = short_digest(all_inputs(*run) + loaded.digest);
+  point.stream = short_digest(stream_inputs(*run) + loaded.digest);
+  point.audited = is_audited(point.id, file);
+  return point;
+}
+
+const Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
+  std::unique_ptr<LoadedScene>& loaded = scenes_[run.scene + "\n" + run.size];
+  if (!loaded) {
+    if (run.scene.empty())
+      throw InputError("scene: found none; allowed: a directory with a scene.toml, or a .toml file");
+    loaded = std::make_unique<LoadedScene>();
+    loaded->scene = load_scene(run.scene);
+    if (!run.size.empty()) loaded->scene.film = *parse_film_size(run.size);
+    loaded->digest = scene_digest(loaded->scene);
+  }
+  return *loaded;
+}
+
+std::string describe_point(const Sweep& sweep, const SweepPoint& point) {
+  std::string text;
+  for (std::size_t i = 0; i < point.inputs.size(); ++i)
+    text += (i == 0 ? "" : ", ") + sweep.keys()[i] + "=" + point.inputs[i];
+  return text.empty() ? "the only point" : text;
+}
+
+}  // namespace testbench

@@ -1,0 +1,138 @@
+#include "testbench/sweep/sweep_table.hpp"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Of a distribution: a list of numbers, or counts by number.
+bool is_distribution(const Json& json) {
+  const auto by_number = [](const auto& entry) {
+    return entry.key().find_first_not_of("0123456789") == std::string::npos && entry.value().is_number();
+  };
+  const auto entries = json.items();
+  return !json.empty() && std::all_of(entries.begin(), entries.end(), by_number);
+}
+
+/// The numbers below `json`, each under its path. Entries of lists go by their name; distributions and how
+/// often each instruction was issued stay in the statistics.
+void add_numbers(const Json& json, const std::string& path, Json& results) {
+  if (json.is_number()) {
+    results[path] = json;
+    return;
+  }
+  if (!json.is_structured() || is_distribution(json)) return;
+  for (const auto& [key, value] : json.items()) {
+    if (key == "issued") continue;
+    const std::string name = json.is_array() && value.is_object() && value.contains("name")
+                                 ? value["name"].get<std::string>()
+                                 : std::string(key);
+    add_numbers(value, path.empty() ? name : path + "." + name, results);
+  }
+}
+
+double number(const Json& json, const char* pointer) {
+  const Json::json_pointer place(pointer);
+  return json.contains(place) && json[place].is_number() ? json[place].get<double>() : 0;
+}
+
+/// What people look for first, from the counts of one run.
+Json headline(const Json& statistics) {
+  const double seconds = number(statistics, "/simulated_seconds");
+  const double cycles = number(statistics, "/simulated_cycles");
+  const auto ratio = [](double a, double b) { return b > 0 ? a / b : 0; };
+  const double pio_bytes =
+      number(statistics, "/chip/pio/bytes_mono_to_poly") + number(statistics, "/chip/pio/bytes_poly_to_mono");
+  const double ddr_bytes =
+      number(statistics, "/chip/ddr/bytes_read") + number(statistics, "/chip/ddr/bytes_written");
+  return {{"simulated_cycles", statistics["simulated_cycles"]},
+          {"simulated_seconds", seconds},
+          {"segments_per_second", ratio(number(statistics, "/segments"), seconds)},
+          {"rays_per_second", ratio(number(statistics, "/rays"), seconds)},
+          {"pio_utilisation", ratio(number(statistics, "/chip/pio/busy_cycles"), cycles)},
+          {"ddr_utilisation", ratio(number(statistics, "/chip/ddr/busy_cycles"), cycles)},
+          {"pio_bytes_per_ray", ratio(pio_bytes, number(statistics, "/rays"))},
+          {"ddr_bytes_per_ray", ratio(ddr_bytes, number(statistics, "/rays"))}};
+}
+
+Json results_of(const Json& statistics) {
+  Json results = headline(statistics);
+  Json inputs_left_out = statistics;
+  for (const char* const input : {"width", "height", "firmware"}) inputs_left_out.erase(input);
+  add_numbers(inputs_left_out, "", results);
+  return results;
+}
+
+Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
+  Json json = {{"inputs", Json::object()}};
+  for (std::size_t i = 0; i < point.inputs.size(); ++i)
+    json["inputs"][sweep.keys()[i]] = typed(point.inputs[i]);
+  json["status"] = line == nullptr ? Json("missing") : (*line)["status"];
+  if (line == nullptr) return json;
+  if (line->contains("error")) json["error"] = (*line)["error"];
+  if (!line->contains("statistics")) return json;
+  const model::ChipConfig& chip = point.request.options.chip;
+  json["results"] = results_of((*line)["statistics"]);
+  json["results"]["total_sram_bytes"] = std::int64_t{chip.chip.pes} * chip.poly.sram_bytes;
+  return json;
+}
+
+/// RFC 4180.
+std::string field(const Json& value) {
+  if (!value.is_string()) return value.dump();
+  const std::string text = value.get<std::string>();
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+Json typed(const std::string& value) {
+  Json json = Json::parse(value, nullptr, false);
+  return json.is_number() || json.is_boolean() ? json : Json(value);
+}
+
+Json sweep_json(const Sweep& sweep, const PointStore& store) {
+  Json base = Json::object();
+  for (const Setting& setting : sweep.base()) base[setting.key] = typed(setting.value);
+  Json points = Json::array();
+  for (const SweepPoint& point : sweep.points())
+    points.push_back(point_json(sweep, point, store.find(point.id)));
+  return {{"format", kSweepFormat},
+          {"keys", sweep.keys()},
+          {"axes", sweep.axes()},
+          {"base", base},
+          {"points", points}};
+}
+
+std::string sweep_csv(const Json& sweep) {
+  std::vector<std::string> names;
+  std::set<std::string> seen;
+  for (const Json& point : sweep["points"])
+    if (point.contains("results"))
+      for (const auto& [name, value] : point["results"].items())
+        if (seen.insert(name).second) names.push_back(name);
+  std::ostringstream csv;
+  for (const Json& key : sweep["keys"]) csv << field(key) << ',';
+  csv << "status,error";
+  for (const std::string& name : names) csv << ',' << field(name);
+  csv << '\n';
+  for (const Json& point : sweep["points"]) {
+    for (const auto& [key, value] : point["inputs"].items()) csv << field(value) << ',';
+    csv << field(point["status"]) << ',' << (point.contains("error") ? field(point["error"]) : "");
+    for (const std::string& name : names) {
+      csv << ',';
+      if (point.contains("results") && point["results"].contains(name)) csv << point["results"][name].dump();
+    }
+    csv << '\n';
+  }
+  return csv.str();
+}
+
+}  // namespace testbench

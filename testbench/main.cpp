@@ -21,6 +21,9 @@ int run(int argc, char** argv) {
   testbench::add_params_command(app);
   testbench::add_bench_command(app);
   testbench::add_validate_command(app);
+  testbench::add_stats_command(app);
+  testbench::add_compare_command(app);
+  testbench::add_golden_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -12,5 +12,8 @@ void add_calibrate_command(CLI::App& app);
 void add_params_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
+void add_stats_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
+void add_golden_command(CLI::App& app);
 
 }  // namespace testbench

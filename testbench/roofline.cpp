@@ -1,0 +1,94 @@
+#include "testbench/roofline.hpp"
+
+#include <algorithm>
+
+namespace testbench {
+namespace {
+
+using cn::InstructionClass;
+
+double peak_flops_per_cycle(const model::ChipConfig& config) {
+  double peak = 0;
+  for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
+    if (config.poly.cycles[i] > 0)
+      peak = std::max(peak, flops_of(static_cast<InstructionClass>(i)) / config.poly.cycles[i]);
+  return peak * config.chip.pes;
+}
+
+double pio_bytes_per_cycle(const model::ChipConfig::Pio& pio) {
+  return pio.bytes_per_cycle * (pio.arbitration == model::PioArbitration::queue_per_direction ? 2 : 1);
+}
+
+}  // namespace
+
+int flops_of(InstructionClass instruction) {
+  switch (instruction) {
+    case InstructionClass::fp64_add:
+    case InstructionClass::fp64_mul:
+    case InstructionClass::fp64_div:
+    case InstructionClass::fp64_sqrt:
+    case InstructionClass::fp64_sincos:
+    case InstructionClass::fp64_exp:
+    case InstructionClass::fp64_log:
+    case InstructionClass::fp64_atan2:
+    case InstructionClass::fp32_add:
+    case InstructionClass::fp32_mul:
+    case InstructionClass::fp32_div:
+    case InstructionClass::fp32_sqrt:
+      return 1;
+    case InstructionClass::fp64_add_vector4:
+    case InstructionClass::fp64_mul_vector4:
+    case InstructionClass::fp32_add_vector4:
+    case InstructionClass::fp32_mul_vector4:
+      return 4;
+    case InstructionClass::fp64_multiply_add_vector4:
+    case InstructionClass::fp32_multiply_add_vector4:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+double flops_of(const cn::IssueCounts& executed) {
+  double sum = 0;
+  for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
+    sum += double(executed.by_class[i]) * flops_of(static_cast<InstructionClass>(i));
+  return sum;
+}
+
+const Roof& Roofline::nearest() const {
+  return *std::max_element(roofs.begin(), roofs.end(),
+                           [](const Roof& a, const Roof& b) { return a.share() < b.share(); });
+}
+
+const Roof& Roofline::roof(std::string_view name) const {
+  return *std::find_if(roofs.begin(), roofs.end(), [name](const Roof& roof) { return roof.name == name; });
+}
+
+double Roofline::attainable_flops_per_second() const {
+  const double share = nearest().share();
+  return share > 0 ? roof("pe_array").attained_per_second / share : roof("pe_array").peak_per_second;
+}
+
+double Roofline::intensity(std::string_view name) const {
+  const double bytes_per_second = roof(name).attained_per_second;
+  return bytes_per_second > 0 ? roof("pe_array").attained_per_second / bytes_per_second : 0;
+}
+
+Roofline roofline_of(const ChipStatistics& statistics) {
+  const model::ChipConfig& config = statistics.config;
+  const double seconds = statistics.seconds();
+  const auto rate = [seconds](double amount) { return seconds > 0 ? amount / seconds : 0; };
+  const double clock_hz = config.chip.clock_hz;
+  Roofline roofline;
+  roofline.flops = flops_of(statistics.all_kernels.executed);
+  roofline.roofs = {{"pe_array", rate(roofline.flops), peak_flops_per_cycle(config) * clock_hz},
+                    {"pio", rate(double(statistics.pio.bytes_to_poly + statistics.pio.bytes_to_mono)),
+                     pio_bytes_per_cycle(config.pio) * clock_hz},
+                    {"clear_connect", rate(double(statistics.bus_pio.bytes + statistics.bus_control.bytes)),
+                     2 * config.clear_connect.bytes_per_cycle * clock_hz},
+                    {"ddr", statistics.ddr_bytes_per_second(), config.ddr.bytes_per_cycle * clock_hz}};
+  return roofline;
+}
+
+}  // namespace testbench

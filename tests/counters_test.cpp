@@ -156,6 +156,7 @@ void expect_sums(const RenderResult& result, const std::string& name) {
     EXPECT_EQ(runs, kernel["runs"].get<std::uint64_t>()) << name << ", " << kernel["name"];
   }
   EXPECT_EQ(exposed, chip.control.exposed_pio()) << name;
+  EXPECT_LE(chip.all_kernels.waited_before.total(), chip.control.exposed_pio()) << name;
   EXPECT_EQ(cycles, chip.control[model::CycleCause::poly]) << name;
   std::uint64_t paths = 0;
   std::uint64_t segments = 0;

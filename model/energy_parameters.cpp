@@ -39,7 +39,7 @@ void instruction(std::vector<ParameterInfo>& table, double picojoules, const cha
 }
 
 void declare_arithmetic(std::vector<ParameterInfo>& table) {
-  constexpr const char* kRoutine = "routine: cycles / 4 passes of adder and multiplier in turn";
+  constexpr const char* kRoutine = "routine: cycles / 4 passes of adder and multiplier in turn [Horowitz]";
   instruction<InstructionClass::fp64_add>(table, 7.8, "register file 6, adder 2 x 0.9 [Horowitz]");
   instruction<InstructionClass::fp64_mul>(table, 24,
                                           "register file 6, multiplier 3.7 x (53 / 24)^2 [Horowitz]");
@@ -53,29 +53,29 @@ void declare_arithmetic(std::vector<ParameterInfo>& table) {
   instruction<InstructionClass::fp32_mul>(table, 9.7, "register file 6, multiplier 3.7 [Horowitz]");
   instruction<InstructionClass::fp32_div>(table, 50, kRoutine);
   instruction<InstructionClass::fp32_sqrt>(table, 58, kRoutine);
-  instruction<InstructionClass::fp64_add_vector4>(table, 31.2, "4 x fp64_add");
-  instruction<InstructionClass::fp64_mul_vector4>(table, 96, "4 x fp64_mul");
-  instruction<InstructionClass::fp64_multiply_add_vector4>(table, 103.2,
-                                                           "4 x (register file 6, multiplier 18, adder 1.8)");
-  instruction<InstructionClass::fp32_add_vector4>(table, 27.6, "4 x fp32_add");
-  instruction<InstructionClass::fp32_mul_vector4>(table, 38.8, "4 x fp32_mul");
+  instruction<InstructionClass::fp64_add_vector4>(table, 31.2, "4 x fp64_add [Horowitz]");
+  instruction<InstructionClass::fp64_mul_vector4>(table, 96, "4 x fp64_mul [Horowitz]");
+  instruction<InstructionClass::fp64_multiply_add_vector4>(
+      table, 103.2, "4 x (register file 6, multiplier 18, adder 1.8) [Horowitz]");
+  instruction<InstructionClass::fp32_add_vector4>(table, 27.6, "4 x fp32_add [Horowitz]");
+  instruction<InstructionClass::fp32_mul_vector4>(table, 38.8, "4 x fp32_mul [Horowitz]");
   instruction<InstructionClass::fp32_multiply_add_vector4>(
-      table, 42.4, "4 x (register file 6, multiplier 3.7, adder 0.9)");
+      table, 42.4, "4 x (register file 6, multiplier 3.7, adder 0.9) [Horowitz]");
 }
 
 void declare_other_instructions(std::vector<ParameterInfo>& table) {
   constexpr Confidence assumed = Confidence::assumed;
   instruction<InstructionClass::int16_alu>(table, 6.05, "register file 6, a pass of the ALU 0.05 [Horowitz]");
-  instruction<InstructionClass::int32_alu>(table, 12.1, "2 passes of int16_alu");
-  instruction<InstructionClass::int64_alu>(table, 24.2, "4 passes of int16_alu");
+  instruction<InstructionClass::int32_alu>(table, 12.1, "2 passes of int16_alu [Horowitz]");
+  instruction<InstructionClass::int64_alu>(table, 24.2, "4 passes of int16_alu [Horowitz]");
   instruction<InstructionClass::int16_mul>(table, 6.8, "register file 6, a quarter of 3.1 [Horowitz]");
-  instruction<InstructionClass::int32_mul>(table, 27.2, "4 of int16_mul");
-  instruction<InstructionClass::int64_mul>(table, 108.8, "4 of int32_mul");
+  instruction<InstructionClass::int32_mul>(table, 27.2, "4 of int16_mul [Horowitz]");
+  instruction<InstructionClass::int64_mul>(table, 108.8, "4 of int32_mul [Horowitz]");
   instruction<InstructionClass::move>(table, 12, "register file twice, 4 bytes each [Horowitz]");
-  instruction<InstructionClass::convert>(table, 7.8, "taken as fp64_add");
-  instruction<InstructionClass::enable>(table, 1, "one bit", assumed);
+  instruction<InstructionClass::convert>(table, 7.8, "taken as fp64_add [Horowitz]");
+  instruction<InstructionClass::enable>(table, 1, "one bit of state, set in each PE", assumed);
   instruction<InstructionClass::sram>(table, 5, "half of a 64-bit word of an 8 KB cache [Horowitz]");
-  instruction<InstructionClass::sram_vector_load>(table, 5, "as sram");
+  instruction<InstructionClass::sram_vector_load>(table, 5, "as sram [Horowitz]");
   instruction<InstructionClass::swazzle>(table, 13, "two register files and a short wire", assumed);
   instruction<InstructionClass::swazzle_vector4>(table, 52, "4 x swazzle", assumed);
   instruction<InstructionClass::reduce>(table, 7, "register file and a wire across the array", assumed);

@@ -100,65 +100,42 @@ std::string table_csv(const GoldenTable& table) {
   return csv;
 }
 
-/// How one counter moved over the runs of a file.
+/// How one counter moved over the runs.
 struct Move {
   int runs = 0;
   std::optional<double> least;     ///< relative difference; nothing where a value is missing or no number
   std::optional<double> greatest;  ///< likewise
   Difference first;
   std::string first_run;
-};
 
-const FlatStatistics* values_of(const GoldenTables& tables, const std::string& file, const std::string& run) {
-  const auto table = tables.find(file);
-  if (table == tables.end()) return nullptr;
-  for (const auto& [name, values] : table->second)
-    if (name == run) return &values;
-  return nullptr;
-}
-
-void note(Move& move, const Difference& difference, const std::string& run) {
-  if (move.runs++ == 0) move.first = difference, move.first_run = run;
-  if (const std::optional<double> relative = difference.relative()) {
-    move.least = std::min(move.least.value_or(*relative), *relative);
-    move.greatest = std::max(move.greatest.value_or(*relative), *relative);
+  void add(const Difference& difference, const std::string& run) {
+    if (runs++ == 0) first = difference, first_run = run;
+    if (const std::optional<double> relative = difference.relative()) {
+      least = std::min(least.value_or(*relative), *relative);
+      greatest = std::max(greatest.value_or(*relative), *relative);
+    }
   }
-}
+};
 
 std::string text_of(const std::optional<Json>& value) {
   return value ? value_of(*value).substr(0, 20) : "missing";
 }
 
-std::string move_line(const std::string& key, const Move& move) {
+std::string move_line(const std::string& key, const Move& move, std::size_t runs) {
   char range[64] = "";
   if (move.least)
     std::snprintf(range, sizeof(range), "  %+.4g to %+.4g %%", 100 * *move.least, 100 * *move.greatest);
-  return "    " + key + ": in " + std::to_string(move.runs) + " runs" + range + "; " + move.first_run + ": " +
-         text_of(move.first.a) + " -> " + text_of(move.first.b) + '\n';
+  return "  " + key + ": in " + std::to_string(move.runs) + " of " + std::to_string(runs) + " runs" + range +
+         "; " + move.first_run + ": " + text_of(move.first.a) + " -> " + text_of(move.first.b) + '\n';
 }
 
-std::string file_moves(const std::string& file, const GoldenTables& kept, const GoldenTables& found) {
-  std::string runs;
-  std::vector<std::string> order;
-  std::map<std::string, Move> moves;
-  if (const auto before = kept.find(file); before != kept.end())
-    for (const auto& [run, values] : before->second)
-      if (values_of(found, file, run) == nullptr) runs += "    run gone: " + run + '\n';
-  if (const auto after = found.find(file); after != found.end()) {
-    for (const auto& [run, values] : after->second) {
-      const FlatStatistics* const before = values_of(kept, file, run);
-      if (before == nullptr) {
-        runs += "    new run: " + run + '\n';
-        continue;
-      }
-      for (const Difference& difference : compare(*before, values, {}).differences) {
-        if (moves.count(difference.key) == 0) order.push_back(difference.key);
-        note(moves[difference.key], difference, run);
-      }
-    }
-  }
-  for (const std::string& key : order) runs += move_line(key, moves[key]);
-  return runs.empty() ? "" : "  " + file + '\n' + runs;
+/// Runs of all files by "cornell_box-paper full n1 both lt".
+std::vector<std::pair<std::string, const FlatStatistics*>> runs_of(const GoldenTables& tables) {
+  std::vector<std::pair<std::string, const FlatStatistics*>> runs;
+  for (const auto& [file, table] : tables)
+    for (const auto& [name, values] : table)
+      runs.emplace_back(fs::path(file).stem().string() + ' ' + name, &values);
+  return runs;
 }
 
 }  // namespace
@@ -197,12 +174,27 @@ void write_golden(const fs::path& directory, const GoldenTables& tables) {
 }
 
 std::string golden_moves(const GoldenTables& kept, const GoldenTables& found) {
-  std::set<std::string> files;
-  for (const GoldenTables* tables : {&kept, &found})
-    for (const auto& [file, table] : *tables) files.insert(file);
-  std::string moves;
-  for (const std::string& file : files) moves += file_moves(file, kept, found);
-  return moves;
+  const auto after = runs_of(found);
+  std::map<std::string, const FlatStatistics*> before;
+  for (const auto& [run, values] : runs_of(kept)) before[run] = values;
+  std::string text;
+  std::vector<std::string> order;
+  std::map<std::string, Move> moves;
+  for (const auto& [run, values] : after) {
+    const auto old = before.find(run);
+    if (old == before.end()) {
+      text += "  new run: " + run + '\n';
+      continue;
+    }
+    for (const Difference& difference : compare(*old->second, *values, {}).differences) {
+      if (moves.count(difference.key) == 0) order.push_back(difference.key);
+      moves[difference.key].add(difference, run);
+    }
+    before.erase(old);
+  }
+  for (const auto& [run, values] : before) text += "  run gone: " + run + '\n';
+  for (const std::string& key : order) text += move_line(key, moves[key], after.size());
+  return text;
 }
 
 }  // namespace testbench

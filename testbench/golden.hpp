@@ -53,7 +53,7 @@ GoldenTables read_golden(const std::filesystem::path& directory);
 /// Writes the tables and removes .csv files of others. One row a counter, one column a run.
 void write_golden(const std::filesystem::path& directory, const GoldenTables& tables);
 
-/// What moved from `kept` to `found`: by file and counter, in how many runs and how far. "" when nothing did.
+/// What moved from `kept` to `found`: by counter, in how many runs and how far. "" when nothing did.
 std::string golden_moves(const GoldenTables& kept, const GoldenTables& found);
 
 }  // namespace testbench

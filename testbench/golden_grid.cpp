@@ -83,6 +83,13 @@ class GridReader {
     return values;
   }
 
+  /// Once: products may overlap.
+  static void add(GoldenRun&& run, GoldenGrid& grid) {
+    for (const GoldenRun& known : grid.runs)
+      if (known.file == run.file && known.name == run.name) return;
+    grid.runs.push_back(std::move(run));
+  }
+
   void add_product(const toml::table& table, GoldenGrid& grid) const {
     only(table, {"scenes", "chips", "programs", "n", "buffers", "timings"});
     const auto programs = list_of(table, "programs", {"segments", "direct", "full"});
@@ -95,7 +102,7 @@ class GridReader {
           for (const std::int64_t n : depths)
             for (const std::string& buffer : buffers)
               for (const std::string& timing : timings)
-                grid.runs.push_back(run(scene, chip, program, int(n), buffer, timing));
+                add(run(scene, chip, program, int(n), buffer, timing), grid);
   }
 
   GoldenRun run(const std::string& scene, const std::string& chip, const std::string& program, int n,

@@ -71,23 +71,25 @@ double Roofline::attainable_flops_per_second() const {
 }
 
 double Roofline::intensity(std::string_view name) const {
-  const double bytes_per_second = roof(name).attained_per_second;
-  return bytes_per_second > 0 ? roof("pe_array").attained_per_second / bytes_per_second : 0;
+  const double bytes = roof(name).amount;
+  return bytes > 0 ? flops() / bytes : 0;
 }
 
 Roofline roofline_of(const ChipStatistics& statistics) {
   const model::ChipConfig& config = statistics.config;
-  const double seconds = statistics.seconds();
-  const auto rate = [seconds](double amount) { return seconds > 0 ? amount / seconds : 0; };
-  const double clock_hz = config.chip.clock_hz;
   Roofline roofline;
-  roofline.flops = flops_of(statistics.all_kernels.executed);
-  roofline.roofs = {{"pe_array", rate(roofline.flops), peak_flops_per_cycle(config) * clock_hz},
-                    {"pio", rate(double(statistics.pio.bytes_to_poly + statistics.pio.bytes_to_mono)),
-                     pio_bytes_per_cycle(config.pio) * clock_hz},
-                    {"clear_connect", rate(double(statistics.bus_pio.bytes + statistics.bus_control.bytes)),
-                     2 * config.clear_connect.bytes_per_cycle * clock_hz},
-                    {"ddr", statistics.ddr_bytes_per_second(), config.ddr.bytes_per_cycle * clock_hz}};
+  const auto add = [&](std::string_view name, double amount, double peak_per_cycle) {
+    const double seconds = statistics.seconds();
+    roofline.roofs.push_back(
+        {name, amount, seconds > 0 ? amount / seconds : 0, peak_per_cycle * config.chip.clock_hz});
+  };
+  add("pe_array", flops_of(statistics.all_kernels.executed), peak_flops_per_cycle(config));
+  add("pio", double(statistics.pio.bytes_to_poly + statistics.pio.bytes_to_mono),
+      pio_bytes_per_cycle(config.pio));
+  add("clear_connect",
+      double(statistics.bus_pio.bytes + statistics.bus_control.bytes + statistics.bus_host.bytes),
+      2 * config.clear_connect.bytes_per_cycle);
+  add("ddr", double(statistics.ddr.bytes_read + statistics.ddr.bytes_written), config.ddr.bytes_per_cycle);
   return roofline;
 }
 

@@ -10,19 +10,22 @@ namespace testbench {
 /// What a run attained of what the chip could (Williams, Waterman and Patterson, Roofline, CACM 52(4), 2009).
 struct Roof {
   std::string_view name;
-  double attained_per_second;  ///< floating-point operations or bytes
+  double amount;  ///< floating-point operations or bytes
+  double attained_per_second;
   double peak_per_second;
 
   double share() const { return peak_per_second > 0 ? attained_per_second / peak_per_second : 0; }
 };
 
 struct Roofline {
-  double flops = 0;  ///< in enabled PEs; a routine (square root, sine, ...) is one, both precisions alike
-  std::vector<Roof> roofs;  ///< pe_array, pio, clear_connect, ddr
+  /// pe_array, pio, clear_connect, ddr. Operations are those of enabled PEs; a routine (square root, sine,
+  /// ...) is one, both precisions alike.
+  std::vector<Roof> roofs;
 
   /// The roof of which the run attained most.
   const Roof& nearest() const;
   const Roof& roof(std::string_view name) const;
+  double flops() const { return roof("pe_array").amount; }
   /// Where the nearest roof would stop the same program if nothing else held it up.
   double attainable_flops_per_second() const;
   /// Operations for each byte through that roof; 0 when no byte went through.

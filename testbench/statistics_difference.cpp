@@ -91,15 +91,15 @@ Comparison compare(const FlatStatistics& a, const FlatStatistics& b, const Compa
 
 std::string difference_text(const std::vector<Difference>& differences) {
   std::size_t width = 0;
-  for (const Difference& of : differences) width = std::max(width, of.key.size());
+  for (const Difference& of : differences) width = std::max(width, name_of(of.key).size());
   std::string text;
   std::string group;
-  for (const Difference& of : differences) {
+  for (const Difference& of : grouped(differences)) {
     if (group_of(of.key) != group) text += (group = group_of(of.key)) + '\n';
     char relative[32] = "";
     if (of.relative()) std::snprintf(relative, sizeof(relative), "%+.4g %%", 100 * *of.relative());
     char line[512];
-    std::snprintf(line, sizeof(line), "  %-*s  %24s  %24s  %12s  %s", int(width), of.key.c_str(),
+    std::snprintf(line, sizeof(line), "  %-*s  %24s  %24s  %12s  %s", int(width), name_of(of.key).c_str(),
                   shortened(of.a).c_str(), shortened(of.b).c_str(), relative, unit_of(of.key).c_str());
     text += line;
     text.erase(text.find_last_not_of(' ') + 1);

@@ -18,6 +18,10 @@ struct Difference {
   std::optional<double> relative() const;
 };
 
+inline const std::string& key_of(const Difference& difference) {
+  return difference.key;
+}
+
 struct Tolerance {
   std::string glob;     ///< of keys, as the shell's: * ? [ ]
   double relative = 0;  ///< numbers that differ by at most so much are equal

@@ -101,10 +101,10 @@ FlatStatistics flatten(const Json& statistics) {
 
 Json read_statistics(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf()))
+  if (!file || std::filesystem::is_directory(path))
     throw InputError(path + ": cannot be read; allowed is a statistics file");
-  return parse_statistics(text.str(), path);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return parse_statistics(text, path);
 }
 
 Json parse_statistics(const std::string& text, const std::string& origin) {
@@ -132,16 +132,20 @@ std::string group_of(const std::string& key) {
   return dot == std::string::npos ? "run" : key.substr(0, dot);
 }
 
+std::string name_of(const std::string& key) {
+  return key.substr(key.rfind('.') + 1);
+}
+
 std::string statistics_text(const Json& statistics) {
-  const FlatStatistics flat = flatten(statistics);
+  const FlatStatistics flat = grouped(flatten(statistics));
   std::size_t width = 0;
-  for (const auto& [key, value] : flat) width = std::max(width, key.size() - key.rfind('.') - 1);
+  for (const auto& [key, value] : flat) width = std::max(width, name_of(key).size());
   std::ostringstream out;
   std::string group;
   for (const auto& [key, value] : flat) {
     if (group_of(key) != group) out << (group.empty() ? "" : "\n") << (group = group_of(key)) << '\n';
     const std::string unit = unit_of(key);
-    out << "  " << std::left << std::setw(int(width) + 2) << key.substr(key.rfind('.') + 1) << value_of(value)
+    out << "  " << std::left << std::setw(int(width) + 2) << name_of(key) << value_of(value)
         << (unit == "-" || unit.empty() || unit == "count" ? "" : " " + unit) << '\n';
   }
   return out.str();

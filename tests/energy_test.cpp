@@ -62,6 +62,19 @@ TEST_F(EnergyOfRuns, DgemmTakesTheVendorsTenWatts) {
     RecordProperty(cause.name, std::to_string(cause.joules / energy.seconds));
 }
 
+TEST_F(EnergyOfRuns, MonteCarloLeavesTheBoardSomeOfItsTwentyFiveWatts) {
+  // The vendor measured its board at 25 W with this program: two chips, their memory, an FPGA and regulators.
+  const model::ChipConfig config = model::default_chip_config();
+  examples::MonteCarlo::Problem problem;
+  problem.kernels = 16;
+  const Energy energy = testbench::energy_of(
+      statistics_of(config, testbench::monte_carlo_run(problem, config.chip.pes, testbench::widest_level())));
+  const double board_watts = 2 * energy.joules() / energy.seconds;
+  RecordProperty("board_watts", std::to_string(board_watts));
+  EXPECT_LT(board_watts, 25);
+  EXPECT_GT(board_watts, 25 / 2.0);
+}
+
 /// A run of one kernel's worth of counts, all of them different.
 ChipStatistics made_up_run() {
   ChipStatistics run;
@@ -164,7 +177,7 @@ TEST(Roofline, PeaksAreTheVendorsAndTheNearestRoofIsTheMostUsedOne) {
   run.all_kernels.executed[InstructionClass::fp64_sqrt] = 1;
   run.all_kernels.executed[InstructionClass::int32_alu] = 1000000;
   const testbench::Roofline roofline = testbench::roofline_of(run);
-  EXPECT_EQ(roofline.flops, 8011);
+  EXPECT_EQ(roofline.flops(), 8011);
   EXPECT_DOUBLE_EQ(roofline.roof("pe_array").peak_per_second, 96 * 2 * 210e6);  // 40.3 GFLOPS
   EXPECT_DOUBLE_EQ(roofline.roof("pio").peak_per_second, 8 * 210e6);
   EXPECT_DOUBLE_EQ(roofline.roof("clear_connect").peak_per_second, 2 * 8 * 210e6);
@@ -188,7 +201,7 @@ TEST_F(EnergyOfRuns, DgemmDoesTheOperationsThatItsWorkIs) {
   const ExampleRun run = testbench::dgemm_run(problem, config.chip.pes, testbench::widest_level());
   const testbench::Roofline roofline = testbench::roofline_of(statistics_of(config, run));
   // The last 8 PEs of 96 feed the others and multiply along.
-  EXPECT_NEAR(roofline.flops / run.work, 96.0 / 88, 1e-12);
+  EXPECT_NEAR(roofline.flops() / run.work, 96.0 / 88, 1e-12);
   EXPECT_EQ(roofline.roofs.size(), 4u);
 }
 

@@ -83,12 +83,11 @@ TEST(StatisticsDifference, IgnoredKeysAreNotCompared) {
 TEST(StatisticsDifference, TextShowsGroupValuesShareAndUnit) {
   FlatStatistics other = with("chip.ddr.page_hits", 250);
   other[4].second = 8;
-  EXPECT_EQ(
-      difference_text(compare(kRun, other, {}).differences),
-      "chip.ddr\n"
-      "  chip.ddr.page_hits                       200                       250         +20 %  count\n"
-      "counts\n"
-      "  counts.steps                               7                         8       +12.5 %  count\n");
+  EXPECT_EQ(difference_text(compare(kRun, other, {}).differences),
+            "chip.ddr\n"
+            "  page_hits                       200                       250         +20 %  count\n"
+            "counts\n"
+            "  steps                             7                         8       +12.5 %  count\n");
   EXPECT_EQ(testbench::difference_text({}), "");
 }
 

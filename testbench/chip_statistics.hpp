@@ -1,7 +1,9 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "firmware/path_tracer/program.hpp"
 #include "model/csx600.hpp"
 
 namespace testbench {
@@ -34,5 +36,9 @@ struct ChipStatistics {
 };
 
 ChipStatistics collect_statistics(const model::Csx600& chip, model::Cycles total_cycles);
+
+/// By the declarations of counters.hpp.
+nlohmann::ordered_json to_json(const ChipStatistics& statistics);
+nlohmann::ordered_json to_json(const path_tracer::RunCounts& counts);
 
 }  // namespace testbench

@@ -71,7 +71,4 @@ void write_counters(const Counters<Source>& counters, const Source& source, nloh
   }
 }
 
-nlohmann::ordered_json to_json(const ChipStatistics& statistics);
-nlohmann::ordered_json to_json(const path_tracer::RunCounts& counts);
-
 }  // namespace testbench

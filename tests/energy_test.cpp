@@ -72,7 +72,6 @@ TEST_F(EnergyOfRuns, MonteCarloLeavesTheBoardSomeOfItsTwentyFiveWatts) {
   const double board_watts = 2 * energy.joules() / energy.seconds;
   RecordProperty("board_watts", std::to_string(board_watts));
   EXPECT_LT(board_watts, 25);
-  EXPECT_GT(board_watts, 25 / 2.0);
 }
 
 /// A run of one kernel's worth of counts, all of them different.

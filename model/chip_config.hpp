@@ -74,6 +74,24 @@ struct ChipConfig {
     double bytes_per_second;
     int latency_cycles;  ///< of one host DMA
   } host;
+
+  /// What things take in joules, to first order. Counters times these after the run; no cycle depends on
+  /// them.
+  struct Energy {
+    double chip_scale;                                       ///< factor for all on-chip picojoules below
+    std::array<double, cn::kInstructionClasses> picojoules;  ///< of an enabled PE, by class; `mono` is unused
+    double pe_clock_picojoules;                              ///< a PE and cycle, enabled or not
+    double control_unit_picojoules;                          ///< a cycle that the control unit does not wait
+    double pio_picojoules_per_byte;                          ///< moved by the PIO engine
+    double clear_connect_picojoules;                         ///< a byte and hop
+    double leakage_watts_per_pe;
+    double leakage_watts;            ///< of all but the PEs
+    double ddr_activate_picojoules;  ///< a page miss
+    double ddr_read_picojoules;      ///< a byte
+    double ddr_write_picojoules;     ///< a byte
+    double ddr_refresh_picojoules;   ///< a refresh
+    double ddr_background_watts;
+  } energy;
 };
 
 }  // namespace model

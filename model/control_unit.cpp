@@ -13,9 +13,9 @@ Cycles ControlStatistics::total() const {
   return std::accumulate(cycles.begin(), cycles.end(), Cycles{0});
 }
 
-Cycles ControlStatistics::exposed_pio() const {
-  return (*this)[CycleCause::wait_load] + (*this)[CycleCause::wait_save] +
-         (*this)[CycleCause::wait_pio_queue];
+PioWaits ControlStatistics::pio_waits() const {
+  return {(*this)[CycleCause::wait_load], (*this)[CycleCause::wait_save],
+          (*this)[CycleCause::wait_pio_queue]};
 }
 
 ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config,
@@ -161,7 +161,9 @@ void ControlUnit::issue_mono(std::uint64_t instructions) {
 
 void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
   if (!timed_ || !issued.root().reached) return;
-  const PeArray::Cost cost = pe_array_.retire(kernel, issued);
+  const PioWaits waits = statistics_.pio_waits();
+  const PeArray::Cost cost = pe_array_.retire(kernel, issued, waits - waits_up_to_last_kernel_);
+  waits_up_to_last_kernel_ = waits;
   const Cycles start = now_;
   settle_pio(start);
   const std::uint64_t words_before = pio->words_moved_before(start);

@@ -34,8 +34,8 @@ struct ControlStatistics {
 
   Cycles operator[](CycleCause cause) const { return cycles[std::size_t(cause)]; }
   Cycles total() const;
-  /// Cycles in which the control unit did nothing but wait for programmed I/O.
-  Cycles exposed_pio() const;
+  Cycles exposed_pio() const { return pio_waits().total(); }
+  PioWaits pio_waits() const;
 };
 
 /// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on a SystemC process
@@ -195,6 +195,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   Cycles sync_cycles_ = 0;
   Cycles next_sync_ = 0;
   ControlStatistics statistics_;
+  PioWaits waits_up_to_last_kernel_;
 };
 
 }  // namespace model

@@ -2,71 +2,12 @@
 
 #include "firmware/cn/lane_mask.hpp"
 #include "model/chip_parameters.hpp"
+#include "model/parameter_declaration.hpp"
 
 namespace model {
 namespace {
 
 using cn::InstructionClass;
-
-ParameterValue to_value(bool field) {
-  return field;
-}
-ParameterValue to_value(int field) {
-  return std::int64_t{field};
-}
-ParameterValue to_value(std::uint64_t field) {
-  return static_cast<std::int64_t>(field);
-}
-ParameterValue to_value(double field) {
-  return field;
-}
-ParameterValue to_value(PioArbitration field) {
-  return std::string(kPioArbitrationNames.at(static_cast<std::size_t>(field)));
-}
-
-void from_value(const ParameterValue& value, bool& field) {
-  field = std::get<bool>(value);
-}
-void from_value(const ParameterValue& value, int& field) {
-  field = static_cast<int>(std::get<std::int64_t>(value));
-}
-void from_value(const ParameterValue& value, std::uint64_t& field) {
-  field = static_cast<std::uint64_t>(std::get<std::int64_t>(value));
-}
-void from_value(const ParameterValue& value, double& field) {
-  field = std::get<double>(value) + 0.0;  // no negative zero
-}
-void from_value(const ParameterValue& value, PioArbitration& field) {
-  const std::string& name = std::get<std::string>(value);
-  for (std::size_t i = 0; i < kPioArbitrationNames.size(); ++i) {
-    if (kPioArbitrationNames[i] == name) field = static_cast<PioArbitration>(i);
-  }
-}
-
-/// A field of ChipConfig, `group` and `member` being pointers to members.
-template <auto group, auto member>
-struct Field {
-  static ParameterValue read(const ChipConfig& config) { return to_value(config.*group.*member); }
-  static void write(ChipConfig& config, const ParameterValue& value) {
-    from_value(value, config.*group.*member);
-  }
-};
-
-template <auto group, auto member>
-ParameterInfo integer(std::string key, std::string unit, std::int64_t default_value, IntegerRange range,
-                      Confidence confidence, std::string meaning) {
-  using F = Field<group, member>;
-  return {std::move(key), std::move(unit),    default_value, range,
-          confidence,     std::move(meaning), &F::read,      &F::write};
-}
-
-template <auto group, auto member>
-ParameterInfo real(std::string key, std::string unit, double default_value, RealRange range,
-                   Confidence confidence, std::string meaning) {
-  using F = Field<group, member>;
-  return {std::move(key), std::move(unit),    default_value, range,
-          confidence,     std::move(meaning), &F::read,      &F::write};
-}
 
 /// Of what firmware sees: another value lets it do other things, not only at other times.
 ParameterInfo seen_by_firmware(ParameterInfo parameter) {
@@ -367,6 +308,7 @@ Parameters declare_parameters() {
   declare_ddr_geometry(table);
   declare_ddr_timing(table);
   declare_host(table);
+  declare_energy(table);
   return table;
 }
 
@@ -397,7 +339,10 @@ const std::vector<ParameterSource>& parameter_sources() {
       {"S15c", "US patent 7,966,475, threads and their scheduler"},
       {"S15e", "US patent 7,802,079, scoreboard and enable stack"},
       {"S15g", "US patent 7,363,472, access indicators"},
-      {"JESD79-2", "JEDEC, DDR2 SDRAM Specification"}};
+      {"JESD79-2", "JEDEC, DDR2 SDRAM Specification"},
+      {"Horowitz",
+       "M. Horowitz, Computing's Energy Problem (and what we can do about it), ISSCC 2014: 45 nm, 0.9 V"},
+      {"MT9HTF", "Micron, MT9HTF3272A/6472A/12872A DDR2 modules of nine devices, IDD at DDR2-400"}};
   return sources;
 }
 

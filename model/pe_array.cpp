@@ -34,7 +34,8 @@ double PeArray::poly_cycles(const cn::IssueCounts& counts) const {
   return vector_loads_overlap_ ? sum - std::min(vector_loads, vector_arithmetic) : sum;
 }
 
-PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
+PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued,
+                              const PioWaits& waited_before) {
   KernelStatistics& statistics = entry(kernel);
   cn::IssueCounts counts;
   double issue_cycles = 0;
@@ -43,6 +44,8 @@ PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
     counts += node.counts;
     issue_cycles += node_cycles;
     statistics.enabled_lane_cycles += node_cycles * double(node.enabled_lanes);
+    for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
+      statistics.executed.by_class[i] += node.counts.by_class[i] * node.enabled_lanes;
   });
   const double poly = issue_cycles * code_quality_factor_;
   const double mono = double(counts.by_class[kMono]) * cycles_[kMono] * code_quality_factor_;
@@ -55,6 +58,8 @@ PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued) {
   statistics.cycles += cost.cycles;
   statistics.issued += counts;
   statistics.issue_cycles += issue_cycles;
+  statistics.waited_before += waited_before;
+  ++statistics.runs_by_enabled_pes[std::size_t(issued.root().enabled_lanes)];
   return cost;
 }
 
@@ -64,6 +69,7 @@ KernelStatistics& PeArray::entry(const char* kernel) {
   names_.push_back(kernel);
   kernels_.push_back({});
   kernels_.back().name = kernel;
+  kernels_.back().runs_by_enabled_pes.resize(std::size_t(num_pes_) + 1);
   return kernels_.back();
 }
 
@@ -74,6 +80,8 @@ KernelStatistics PeArray::total() const {
     sum.runs += kernel.runs;
     sum.cycles += kernel.cycles;
     sum.issued += kernel.issued;
+    sum.executed += kernel.executed;
+    sum.waited_before += kernel.waited_before;
     sum.issue_cycles += kernel.issue_cycles;
     sum.enabled_lane_cycles += kernel.enabled_lane_cycles;
   }

@@ -12,11 +12,31 @@
 
 namespace model {
 
+/// Cycles in which the control unit did nothing but wait for programmed I/O.
+struct PioWaits {
+  Cycles load = 0;   ///< on a semaphore of a mono-to-poly transfer
+  Cycles save = 0;   ///< on a semaphore of a poly-to-mono transfer
+  Cycles queue = 0;  ///< to queue a request
+
+  Cycles total() const { return load + save + queue; }
+  PioWaits& operator+=(const PioWaits& other) {
+    load += other.load, save += other.save, queue += other.queue;
+    return *this;
+  }
+  PioWaits operator-(const PioWaits& other) const {
+    return {load - other.load, save - other.save, queue - other.queue};
+  }
+};
+
 struct KernelStatistics {
   std::string name;
   std::uint64_t runs = 0;
   Cycles cycles = 0;
   cn::IssueCounts issued;
+  cn::IssueCounts executed;  ///< issued, each weighted by the PEs enabled
+  PioWaits waited_before;    ///< between the kernel before this one, whichever it was, and this one
+  /// [e]: runs that began with e PEs enabled, empty in total().
+  std::vector<std::uint64_t> runs_by_enabled_pes;
   double issue_cycles = 0;         ///< before the code quality factor
   double enabled_lane_cycles = 0;  ///< the same, each weighted by the PEs enabled
 
@@ -40,7 +60,8 @@ class PeArray : public sc_core::sc_module {
 
   /// Books a kernel and returns what it takes. Mono instructions go on beside poly ones through the issue
   /// queue; the longer stream counts. So do vector loads beside vector arithmetic, if the chip overlaps them.
-  Cost retire(const char* kernel, const cn::IssueTree& issued);
+  /// @param waited_before of the control unit since the kernel before
+  Cost retire(const char* kernel, const cn::IssueTree& issued, const PioWaits& waited_before = {});
 
   const std::vector<KernelStatistics>& kernels() const { return kernels_; }
   KernelStatistics total() const;

@@ -25,6 +25,9 @@ int run(int argc, char** argv) {
   testbench::add_waves_command(app);
   testbench::add_sweep_command(app);
   testbench::add_report_command(app);
+  testbench::add_stats_command(app);
+  testbench::add_compare_command(app);
+  testbench::add_golden_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

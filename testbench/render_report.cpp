@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "model/chip_file.hpp"
-#include "testbench/host_time.hpp"
+#include "testbench/counters.hpp"
+#include "testbench/energy.hpp"
 #include "testbench/paper.hpp"
 #include "testbench/program_names.hpp"
+#include "testbench/roofline.hpp"
+#include "testbench/statistics_file.hpp"
 
 namespace testbench {
 namespace {
@@ -34,10 +37,6 @@ Json program_json(const RenderOptions& options) {
           {"samples", options.work.samples}};
 }
 
-std::uint64_t rays(const path_tracer::RunCounts& counts) {
-  return counts.segments + counts.shadow_rays;
-}
-
 std::string text(const char* format, double value) {
   char buffer[64];
   std::snprintf(buffer, sizeof(buffer), format, value);
@@ -45,6 +44,25 @@ std::string text(const char* format, double value) {
 }
 
 using Rows = std::vector<std::pair<std::string, std::string>>;
+
+void add_energy_row(const RenderResult& result, Rows& rows) {
+  const Energy energy = energy_of(*result.chip);
+  const std::uint64_t rays = result.counts.segments + result.counts.shadow_rays;
+  rows.emplace_back("energy", text("%.4g J", energy.joules()) +
+                                  text(" (%.1f W chip", energy.chip_joules() / energy.seconds) +
+                                  text(", %.1f W DDR)", energy.ddr_joules() / energy.seconds) +
+                                  text(", %.0f rays/J", double(rays) / energy.joules()));
+}
+
+void add_roofline_row(const ChipStatistics& chip, Rows& rows) {
+  const Roofline roofline = roofline_of(chip);
+  std::string row;
+  for (const Roof& roof : roofline.roofs)
+    row += text("%.2f", roof.attained_per_second * 1e-9) + text(" of %.1f G", roof.peak_per_second * 1e-9) +
+           (roof.name == "pe_array" ? "flop/s" : "B/s " + std::string(roof.name)) + ", ";
+  rows.emplace_back("roofline", row + "nearest roof " + std::string(roofline.nearest().name) +
+                                    text(" at %.1f %%", 100 * roofline.nearest().share()));
+}
 
 void add_chip_rows(const RenderResult& result, Rows& rows) {
   const ChipStatistics& chip = *result.chip;
@@ -55,6 +73,8 @@ void add_chip_rows(const RenderResult& result, Rows& rows) {
   rows.emplace_back("SIMD efficiency", text("%.2f %%", 100 * chip.simd_efficiency()));
   rows.emplace_back("exposed DMA", text("%.2f %% of the time", 100 * chip.exposed_pio_share()));
   rows.emplace_back("DDR bandwidth", text("%.1f MB/s", chip.ddr_bytes_per_second() * 1e-6));
+  add_energy_row(result, rows);
+  add_roofline_row(chip, rows);
 }
 
 void add_host_rows(const RenderRequest& request, const RenderResult& result, Rows& rows) {
@@ -75,7 +95,7 @@ const char* timing_name(model::TimingStyle timing) {
 
 Json render_statistics(const RenderRequest& request, const RenderResult& result) {
   Json json;
-  json["format"] = "csx600-statistics-1";
+  json["format"] = kStatisticsFormat;
   json["scene"] = request.scene;
   json["width"] = result.film.size().width;
   json["height"] = result.film.size().height;
@@ -84,22 +104,15 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   json["timing"] = request.native ? "none" : timing_name(request.options.timing);
   json["chip_preset"] = request.options.chip.preset;
   json["chip_config"] = model::effective_toml(request.options.chip);
-  if (result.chip) {
-    json["simulated_seconds"] = result.chip->seconds();
-    json["simulated_cycles"] = result.chip->firmware_cycles;
-  } else {
-    json["simulated_seconds"] = nullptr;  // a native run has no clock
-    json["simulated_cycles"] = nullptr;
-  }
-  json["segments"] = result.counts.segments;
-  json["rays"] = rays(result.counts);
+  Json measured;
+  write_counters(run_counters(), result, measured);
+  const Json host = measured["host"];
+  measured.erase("host");
+  json.update(measured);
   json["image_sha256"] = result.film.sha256();
   json["counts"] = to_json(result.counts);
   if (result.chip) json["chip"] = to_json(*result.chip);
-  json["host"] = {{"cpu_seconds", result.cpu_seconds},
-                  {"wall_seconds", result.wall_seconds},
-                  {"peak_bytes", peak_bytes()},
-                  {"segments_per_cpu_second", double(result.counts.segments) / result.cpu_seconds}};
+  json["host"] = host;
   return json;
 }
 
@@ -113,9 +126,9 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
   add_host_rows(request, result, rows);
   std::string table;
   for (const auto& [label, value] : rows) {
-    char line[160];
-    std::snprintf(line, sizeof(line), "  %-24s %s\n", label.c_str(), value.c_str());
-    table += line;
+    char name[32];
+    std::snprintf(name, sizeof(name), "  %-24s ", label.c_str());
+    table += name + value + '\n';
   }
   return table;
 }

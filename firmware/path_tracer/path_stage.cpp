@@ -16,8 +16,8 @@ PathStage::PathStage(const StageContext& context, const Work& work)
                      const CameraRecord& camera = *context.machine.read_mono(context.layout.camera);
                      return camera.width * camera.height;
                    }()),
-      number_{
-          context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes} {}
+      number_{context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes},
+      segments_(std::size_t(context.config.bin_blocks) * std::size_t(context.machine.num_pes())) {}
 
 PathStage::Loads PathStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
@@ -43,6 +43,7 @@ void PathStage::load(std::uint64_t step, int block) {
 
 void PathStage::process(std::uint64_t step, int block) {
   append_vertices(step, block);
+  count_segments(block);
   const int ended_count = context_.machine.count(ended_);
   list_finished(step);
   if (!(finished_ == ended_)) {
@@ -74,6 +75,23 @@ void PathStage::append_vertices(std::uint64_t step, int block) {
   arguments.ended = &ended_;
   arguments.finished = &finished_;
   context_.machine.run(context_.kernels.append, arguments, appended_);
+}
+
+/// Beside what the chip does, so it costs nothing.
+void PathStage::count_segments(int block) {
+  std::uint32_t* const of_block = &segments_[std::size_t(first_slot(block))];
+  std::vector<std::uint64_t>& paths = context_.counts.paths_by_segments;
+  for (int strip = 0; strip < num_pes() / cn::kStripLanes; ++strip) {
+    std::uint32_t* const of_strip = of_block + strip * cn::kStripLanes;
+    const std::uint32_t appended = appended_.strip_bits(strip);
+    for (int i = 0; i < cn::kStripLanes; ++i) of_strip[i] += (appended >> i) & 1;
+    for (std::uint32_t ended = ended_.strip_bits(strip); ended != 0; ended &= ended - 1) {
+      std::uint32_t& segments = of_strip[__builtin_ctz(ended)];
+      if (segments >= paths.size()) paths.resize(segments + 1);
+      ++paths[segments];
+      segments = 0;
+    }
+  }
 }
 
 void PathStage::list_finished(std::uint64_t step) {

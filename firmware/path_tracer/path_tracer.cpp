@@ -112,12 +112,19 @@ void PathTracer::fill_bins() {
 
 /// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before.
 void PathTracer::plan_pass() {
+  count_rays();
   for (const int block : live_blocks_) plan(intersection_stage_, block);
   for (const int block : live_blocks_) plan(path_stage_, block);
   path_steps_left_ = static_cast<int>(live_blocks_.size());
   counts_.blocks += live_blocks_.size();
   if (!live_blocks_.empty()) counts_.skipped_blocks += std::size_t(config_.bin_blocks) - live_blocks_.size();
   live_blocks_.clear();
+}
+
+void PathTracer::count_rays() {
+  std::uint64_t rays = 0;
+  for (const int block : live_blocks_) rays += std::uint64_t(bins_.blocks[std::size_t(block)].live.count());
+  if (rays > 0) counts_.rays.add(rays);
 }
 
 /// A step's records come from earlier steps on the same block of the bins. Few live blocks bring the two so

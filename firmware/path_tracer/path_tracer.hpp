@@ -62,6 +62,7 @@ class PathTracer {
   void run_ray_step_with_radiance();
   void after_path_step(const Step& step);
   void plan_pass();
+  void count_rays();
   void plan_radiance_of_pass();
   void plan_list_step();
   void issue_radiance_loads();

@@ -29,6 +29,18 @@ void require(bool ok, const std::string& what, const std::string& found, const s
 
 }  // namespace
 
+void PassCounts::add(std::uint64_t count) {
+  if (passes_ == passes_per_interval_ * kMaxIntervals) {
+    for (std::size_t i = 0; i < kMaxIntervals / 2; ++i)
+      intervals_[i] = intervals_[2 * i] + intervals_[2 * i + 1];
+    intervals_.resize(kMaxIntervals / 2);
+    passes_per_interval_ *= 2;
+  }
+  if (passes_ == passes_per_interval_ * intervals_.size()) intervals_.push_back(0);
+  intervals_.back() += count;
+  ++passes_;
+}
+
 void validate(const ProgramConfig& config) {
   require(config.n >= 0 && config.n <= kMaxBuffers, "n", std::to_string(config.n),
           "0 to " + std::to_string(kMaxBuffers));

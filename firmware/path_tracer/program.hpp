@@ -115,6 +115,24 @@ struct Layout {
 
 Layout make_layout(int triangle_count, int light_count, int num_pes, const ProgramConfig& config);
 
+/// A count by pass, in at most kMaxIntervals intervals of as many passes each; the last one may be shorter.
+/// Two intervals become one when there are too many.
+class PassCounts {
+ public:
+  static constexpr std::size_t kMaxIntervals = 64;
+
+  void add(std::uint64_t count);
+
+  std::uint64_t passes() const { return passes_; }
+  std::uint64_t passes_per_interval() const { return passes_per_interval_; }
+  const std::vector<std::uint64_t>& intervals() const { return intervals_; }
+
+ private:
+  std::uint64_t passes_ = 0;
+  std::uint64_t passes_per_interval_ = 1;
+  std::vector<std::uint64_t> intervals_;
+};
+
 /// Counts that belong to the firmware, not to the chip.
 struct RunCounts {
   std::uint64_t paths = 0;
@@ -124,6 +142,8 @@ struct RunCounts {
   std::uint64_t blocks = 0;          ///< blocks of the ray bin processed
   std::uint64_t skipped_blocks = 0;  ///< empty blocks of the ray bin that were not
   std::uint64_t steps = 0;
+  std::vector<std::uint64_t> paths_by_segments;  ///< [s]: paths that ended with s segments
+  PassCounts rays;                               ///< in the ray bin, segments and shadow rays, by pass
 };
 
 }  // namespace path_tracer

@@ -117,6 +117,7 @@ class PathStage : public Stage {
   void append_vertices(std::uint64_t step, int block);
   void list_finished(std::uint64_t step);
   void replace_ended(std::uint64_t step, int block, int ended_count);
+  void count_segments(int block);
 
   CameraRays camera_rays_;
   PolyField<std::int32_t> number_;
@@ -126,6 +127,7 @@ class PathStage : public Stage {
   LaneMask finished_;
   LaneMask replaced_;  ///< slots with a new ray
   int finished_count_ = 0;
+  std::vector<std::uint32_t> segments_;  ///< by slot, of the path that holds it: for RunCounts only
 };
 
 /// Radiance of the paths that the path stage listed, vertex by vertex from the last to the first (paper,

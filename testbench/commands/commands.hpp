@@ -16,5 +16,8 @@ void add_validate_command(CLI::App& app);
 void add_waves_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
 void add_report_command(CLI::App& app);
+void add_stats_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
+void add_golden_command(CLI::App& app);
 
 }  // namespace testbench

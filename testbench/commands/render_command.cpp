@@ -15,6 +15,7 @@
 #include "testbench/rank_render.hpp"
 #include "testbench/render_report.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/statistics_file.hpp"
 
 namespace testbench {
 namespace {
@@ -33,6 +34,7 @@ struct RenderCommand {
   std::string exr;
   std::string png;
   std::string statistics;
+  bool statistics_text_wanted = false;
   ObservationOption observation;
 
   void run();
@@ -80,7 +82,8 @@ void RenderCommand::write_outputs(const RenderRequest& request, const RenderResu
   if (!exr.empty()) write_exr(exr, result.film, render_provenance(request, result));
   if (!png.empty()) write_png(png, result.film);
   if (!statistics.empty())
-    write_bytes_atomically(statistics, render_statistics(request, result).dump(2) + "\n");
+    write_bytes_atomically(statistics, statistics_for_file(statistics, render_statistics(request, result)));
+  if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
 }
 
 /// Each rank renders its share of the samples on a machine of its own.
@@ -199,7 +202,9 @@ void add_render_command(CLI::App& app) {
   add_check_hazards_flag(command, state->options.check_hazards);
   command.add_option("--exr", state->exr, "Write the image as OpenEXR");
   command.add_option("--png", state->png, "Write the image as PNG");
-  command.add_option("--stats,--json", state->statistics, "Write statistics as JSON");
+  command.add_option("--stats,--json", state->statistics,
+                     "Write statistics: as CSV or text to a .csv or .txt file, otherwise as JSON");
+  command.add_flag("--stats-text", state->statistics_text_wanted, "Print the statistics");
   state->observation.add_to(command);
   command.callback([state] { state->run(); });
 }

@@ -1,0 +1,53 @@
+#include <cstdio>
+#include <memory>
+
+#include "testbench/commands/command_options.hpp"
+#include "testbench/commands/commands.hpp"
+#include "testbench/error.hpp"
+#include "testbench/golden.hpp"
+#include "testbench/progress_bar.hpp"
+
+namespace testbench {
+namespace {
+
+struct GoldenCommand {
+  std::string directory;
+  bool update = false;
+  int jobs = 1;
+
+  void run() const {
+    path_tracer::ProgramConfig program;
+    choose_best_sampling(program);
+    const GoldenGrid grid = read_golden_grid(directory, program);
+    const GoldenTables kept = read_golden(directory);
+    GoldenTables found;
+    {
+      ProgressBar bar("golden runs");
+      found = run_golden(grid, jobs, [&](double share) { bar.show(share); });
+    }
+    const std::string moves = golden_moves(kept, found);
+    std::fputs(moves.c_str(), stdout);
+    std::printf("%zu runs, %s\n", grid.runs.size(), moves.empty() ? "nothing moved" : "moved as listed");
+    if (update) {
+      write_golden(directory, found);
+    } else if (!moves.empty()) {
+      throw RunError(
+          directory +
+          ": runs differ from what is kept; if that is meant, csx600 golden --update writes them anew");
+    }
+  }
+};
+
+}  // namespace
+
+void add_golden_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand(
+      "golden", "Repeat the runs of DIRECTORY/grid.toml and compare them with the tables kept there");
+  const auto state = std::make_shared<GoldenCommand>();
+  command.add_option("directory", state->directory, "Where grid.toml and the tables are")->required();
+  command.add_flag("--update", state->update, "Show what moved and write the tables anew");
+  add_jobs_option(command, state->jobs);
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

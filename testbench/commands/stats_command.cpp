@@ -1,0 +1,47 @@
+#include <cstdio>
+#include <memory>
+
+#include "testbench/atomic_file.hpp"
+#include "testbench/commands/commands.hpp"
+#include "testbench/counters.hpp"
+#include "testbench/error.hpp"
+#include "testbench/statistics_file.hpp"
+
+namespace testbench {
+namespace {
+
+struct StatsCommand {
+  std::string file;
+  std::string output;
+  bool describe = false;
+
+  void run() const {
+    if (describe != file.empty())
+      throw InputError("stats: found " + std::string(describe ? "a file and --describe" : "neither") +
+                       ", allowed is either a statistics file or --describe");
+    if (describe) {
+      std::fputs(describe_counters().c_str(), stdout);
+      return;
+    }
+    if (!output.empty()) require_writable(output);
+    const nlohmann::ordered_json statistics = read_statistics(file);
+    if (output.empty()) {
+      std::fputs(statistics_text(statistics).c_str(), stdout);
+    } else {
+      write_bytes_atomically(output, statistics_for_file(output, statistics));
+    }
+  }
+};
+
+}  // namespace
+
+void add_stats_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("stats", "Print a run's statistics, or what they mean");
+  const auto state = std::make_shared<StatsCommand>();
+  command.add_option("file", state->file, "Statistics that render --stats has written as JSON");
+  command.add_flag("--describe", state->describe, "Print name, unit and meaning of every counter instead");
+  command.add_option("-o,--output", state->output, "Write them to this .csv, .txt or .json file instead");
+  command.callback([state] { state->run(); });
+}
+
+}  // namespace testbench

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace testbench {
+
+inline constexpr const char* kStatisticsFormat = "csx600-statistics-1";
+
+/// The values of a statistics file by key, in the order of the file. What an array's elements are called
+/// comes from their "name", or is their index; the chip's parameters are keys of their own
+/// ("chip_config.pio.setup_cycles").
+using FlatStatistics = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
+FlatStatistics flatten(const nlohmann::ordered_json& statistics);
+
+/// Throws InputError, one line that names the file, when it cannot be read, is not JSON, has another format
+/// or lacks a counter.
+nlohmann::ordered_json read_statistics(const std::string& path);
+/// The same of a text that came from `origin`.
+nlohmann::ordered_json parse_statistics(const std::string& text, const std::string& origin);
+
+/// For people: values with units, by group.
+std::string statistics_text(const nlohmann::ordered_json& statistics);
+/// key,unit,value,meaning
+std::string statistics_csv(const nlohmann::ordered_json& statistics);
+std::string statistics_json(const nlohmann::ordered_json& statistics);
+/// By the suffix of the path: .csv, .txt, otherwise JSON.
+std::string statistics_for_file(const std::string& path, const nlohmann::ordered_json& statistics);
+
+inline const std::string& key_of(const FlatStatistics::value_type& value) {
+  return value.first;
+}
+/// The last part of a key: "busy_cycles".
+std::string name_of(const std::string& key);
+/// What a key belongs to: "counts", "chip.pio", "chip.pe_array.kernels.intersect".
+std::string group_of(const std::string& key);
+/// Its unit, "" for what the run was asked to do.
+std::string unit_of(const std::string& key);
+/// Strings without quotes, the rest as JSON writes it.
+std::string value_of(const nlohmann::ordered_json& value);
+
+/// Puts what belongs to one group together, groups and keys otherwise in their order. key_of() knows
+/// the key of an item.
+template <class Item>
+std::vector<Item> grouped(const std::vector<Item>& items) {
+  std::vector<std::string> groups;
+  std::vector<std::vector<Item>> by_group;
+  for (const Item& item : items) {
+    const auto found = std::find(groups.begin(), groups.end(), group_of(key_of(item)));
+    if (found == groups.end()) {
+      groups.push_back(group_of(key_of(item)));
+      by_group.push_back({item});
+    } else {
+      by_group[std::size_t(found - groups.begin())].push_back(item);
+    }
+  }
+  std::vector<Item> all;
+  for (const std::vector<Item>& group : by_group) all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+}  // namespace testbench

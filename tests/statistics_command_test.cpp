@@ -1,0 +1,154 @@
+// `csx600 stats`, `compare` and `golden` as their users meet them.
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command_line.hpp"
+
+namespace {
+
+using nlohmann::ordered_json;
+using test_support::CommandResult;
+
+const std::string kCornellBox = std::string(CSX600_SCENES_DIR) + "/cornell_box";
+
+class StatisticsCommands : public test_support::CommandLineFixture {
+ protected:
+  CommandResult render(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"render", kCornellBox, "--size", "8x6", "--samples", "2"});
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return result;
+  }
+  void expect_error(const std::vector<std::string>& arguments, int exit_code, const std::string& line) {
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code);
+    ASSERT_EQ(result.error_lines().size(), 1u) << result.error;
+    EXPECT_EQ(result.error_lines()[0], "csx600: " + line);
+  }
+};
+
+TEST_F(StatisticsCommands, FormFollowsTheSuffix) {
+  render({"--stats", "a.json"});
+  render({"--stats", "a.csv"});
+  render({"--stats", "a.txt"});
+  EXPECT_NE(read("a.json").find("\"format\": \"csx600-statistics-1\""), std::string::npos);
+  EXPECT_EQ(read("a.csv").rfind("key,unit,value,meaning\n", 0), 0u);
+  EXPECT_NE(read("a.csv").find("\nchip.energy.watts,W,"), std::string::npos);
+  EXPECT_NE(read("a.txt").find("\nchip.energy\n  joules "), std::string::npos);
+}
+
+TEST_F(StatisticsCommands, StatsPrintsAndConvertsWhatRenderHasWritten) {
+  const std::string text = render({"--stats", "a.json", "--stats-text"}).out;
+  const CommandResult shown = run({"stats", "a.json"});
+  EXPECT_EQ(shown.exit_code, 0) << shown.error;
+  for (const char* part : {"\nchip.pio\n", "  busy_cycles ", "\nchip.roofline\n", "  rays_per_joule "}) {
+    EXPECT_NE(shown.out.find(part), std::string::npos) << part;
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(run({"stats", "a.json", "-o", "b.json"}).exit_code, 0);
+  EXPECT_EQ(read("b.json"), read("a.json"));
+  EXPECT_EQ(run({"stats", "a.json", "-o", "b.csv"}).exit_code, 0);
+  EXPECT_EQ(read("b.csv").rfind("key,unit,value,meaning\n", 0), 0u);
+}
+
+TEST_F(StatisticsCommands, NativeStatisticsAreStatisticsToo) {
+  render({"--native", "--stats", "a.json"});
+  EXPECT_EQ(run({"stats", "a.json"}).exit_code, 0);
+  EXPECT_EQ(run({"compare", "a.json", "a.json"}).exit_code, 0);
+}
+
+TEST_F(StatisticsCommands, DescribePrintsNameUnitMeaning) {
+  const CommandResult result = run({"stats", "--describe"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.out.find("chip.ddr.page_misses"), std::string::npos);
+  EXPECT_NE(result.out.find("bytes      loaded, in all PEs"), std::string::npos);
+  expect_error({"stats"}, 2, "stats: found neither, allowed is either a statistics file or --describe");
+  render({"--stats", "a.json"});
+  expect_error({"stats", "a.json", "--describe"}, 2,
+               "stats: found a file and --describe, allowed is either a statistics file or --describe");
+}
+
+TEST_F(StatisticsCommands, EqualRunsCompareEqualWhateverTheHostsTimes) {
+  render({"--stats", "a.json"});
+  render({"--stats", "b.json"});
+  EXPECT_NE(read("a.json"), read("b.json"));
+  const CommandResult result = run({"compare", "a.json", "b.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(result.out.rfind("equal: ", 0), 0u) << result.out;
+  EXPECT_EQ(run({"compare", "a.json", "b.json", "--host"}).exit_code, 1);
+}
+
+TEST_F(StatisticsCommands, AnotherChipIsADifferenceThatIsShown) {
+  render({"--stats", "a.json"});
+  render({"--stats", "b.json", "--set", "pio.setup_cycles=300"});
+  const CommandResult result = run({"compare", "a.json", "b.json"});
+  EXPECT_EQ(result.exit_code, 1);
+  ASSERT_EQ(result.error_lines().size(), 1u);
+  EXPECT_EQ(result.error.rfind("csx600: a.json and b.json differ in ", 0), 0u) << result.error;
+  for (const char* part : {"chip_config.pio\n", "  setup_cycles ", " +50 %", "chip.pio\n", " cycles\n"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << " in " << result.out;
+  EXPECT_EQ(result.out.find("image_sha256"), std::string::npos);
+  EXPECT_EQ(run({"compare", "a.json", "b.json", "--ignore", "chip_config.*", "--ignore", "simulated*",
+                 "--tolerance", "chip.*=2", "--tolerance", "*per_joule=1", "--ignore", "*nearest_roof"})
+                .exit_code,
+            0);
+  EXPECT_EQ(run({"compare", "a.json", "b.json", "--tolerance", "chip*=2", "--tolerance",
+                 "chip.pio.setup_cycles=0.1", "--ignore", "*per_joule", "--ignore", "simulated*"})
+                .exit_code,
+            1);
+}
+
+TEST_F(StatisticsCommands, WrongUsageAndFilesEndWithTwo) {
+  render({"--stats", "a.json"});
+  expect_error({"compare", "a.json", "none.json"}, 2,
+               "none.json: cannot be read; allowed is a statistics file");
+  expect_error({"compare", ".", "a.json"}, 2, ".: cannot be read; allowed is a statistics file");
+  write("half.json", read("a.json").substr(0, 3000));
+  expect_error({"compare", "half.json", "a.json"}, 2,
+               "half.json: not a whole JSON object; allowed is a statistics file");
+  expect_error({"stats", "half.json"}, 2, "half.json: not a whole JSON object; allowed is a statistics file");
+  write("empty.json", "");
+  expect_error({"stats", "empty.json"}, 2,
+               "empty.json: not a whole JSON object; allowed is a statistics file");
+  ordered_json other = ordered_json::parse(read("a.json"));
+  other["format"] = "csx600-statistics-0";
+  write("old.json", other.dump());
+  expect_error({"compare", "a.json", "old.json"}, 2,
+               "old.json: format: found 'csx600-statistics-0', allowed is 'csx600-statistics-1'");
+  for (const char* tolerance :
+       {"chip.*", "chip.*=", "=0.1", "chip.*=x", "chip.*=-1", "chip.*=nan", "chip.*=1y"})
+    expect_error({"compare", "a.json", "a.json", "--tolerance", tolerance}, 2,
+                 "--tolerance: found '" + std::string(tolerance) +
+                     "', allowed is KEYGLOB=REL, for example chip.ddr.*=0.01");
+  EXPECT_EQ(run({"compare", "a.json"}).exit_code, 2);
+}
+
+TEST_F(StatisticsCommands, GoldenUpdatesWithOneCommandAndShowsWhatMoved) {
+  const auto grid = [](int samples) {
+    return "width = 6\nheight = 4\nsamples = " + std::to_string(samples) + "\n[[grid]]\nscenes = [\"" +
+           kCornellBox +
+           "\"]\nchips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = [\"both\"]\n"
+           "timings = [\"lt\"]\n";
+  };
+  write("kept/grid.toml", grid(1));
+  EXPECT_EQ(run({"golden", "kept"}).exit_code, 1) << "nothing is kept yet";
+  const CommandResult first = run({"golden", "kept", "--update"});
+  EXPECT_EQ(first.exit_code, 0) << first.error;
+  EXPECT_NE(first.out.find("new run: cornell_box-csx600 full n1 both lt"), std::string::npos);
+  EXPECT_EQ(run({"golden", "kept"}).out, "1 runs, nothing moved\n");
+  write("kept/grid.toml", grid(2));
+  const CommandResult moved = run({"golden", "kept"});
+  EXPECT_EQ(moved.exit_code, 1);
+  EXPECT_NE(
+      moved.out.find(
+          "  counts.paths: in 1 of 1 runs  +50 to +50 %; cornell_box-csx600 full n1 both lt: 24 -> 48\n"),
+      std::string::npos)
+      << moved.out;
+  EXPECT_EQ(run({"golden", "kept", "--update"}).exit_code, 0);
+  EXPECT_EQ(run({"golden", "kept"}).exit_code, 0);
+  expect_error({"golden", "none"}, 2,
+               "none/grid.toml: cannot be read as TOML: File could not be opened for reading");
+}
+
+}  // namespace

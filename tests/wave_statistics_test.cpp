@@ -221,8 +221,8 @@ TEST_P(WaveStatistics, TimelineIsWhatItsFormatAsksForAndAddsUp) {
     const int track = event.at("tid");
     const double start = event.at("ts"), duration = event.at("dur");
     const Cycles first = event.at("args").at("start_cycle"), length = event.at("args").at("cycles");
-    EXPECT_NEAR(start, double(first) * 1e6 / chip.clock_hz, 1e-6);
-    EXPECT_NEAR(duration, double(length) * 1e6 / chip.clock_hz, 2e-6);
+    EXPECT_NEAR(start, double(first) * 1e6 / chip.config.chip.clock_hz, 1e-6);
+    EXPECT_NEAR(duration, double(length) * 1e6 / chip.config.chip.clock_hz, 2e-6);
     cycles[track] += length;
     ++events[track];
     spans[track].emplace_back(start, start + duration);

@@ -21,6 +21,10 @@ DdrTiming::DdrTiming(const ChipConfig::Ddr& config)
 /// Accesses of one direction and arrival. What each page access leaves to the next is kept here and written
 /// back once: a gather has a hundred of them, each depends on the one before, and by way of memory that takes
 /// longer (4 million segments: 103 ms, so 65 ms).
+///
+/// @tparam Division PowerOfTwo where the memory's numbers allow it, else Divisor
+/// @tparam may_be_observed whether somebody may have asked for commands
+template <class Division, bool may_be_observed>
 class DdrTiming::Burst {
  public:
   Burst(DdrTiming& ddr, BusDirection direction, Cycles arrival)
@@ -34,11 +38,10 @@ class DdrTiming::Burst {
         arrival_(arrival),
         turn_round_(ddr.turn_round(direction)),
         bus_free_(ddr.bus_free_),
-        next_refresh_(ddr.next_refresh_),
-        is_observed_(ddr.command_observer_ != nullptr) {}
+        next_refresh_(ddr.next_refresh_) {}
 
   /// Returns the first byte's cycle on the data bus.
-  Cycles access(cn::MonoAddress address, std::uint64_t bytes) {
+  [[gnu::always_inline]] inline Cycles access(cn::MonoAddress address, std::uint64_t bytes) {
     bytes_ += bytes;
     std::uint64_t page = page_bytes_.quotient(address);
     std::uint64_t in_page = std::min(bytes, page_bytes_.value() - page_bytes_.remainder(address));
@@ -65,7 +68,7 @@ class DdrTiming::Burst {
 
  private:
   /// A piece within one page.
-  Cycles access_page(std::uint64_t page, std::uint64_t bytes) {
+  [[gnu::always_inline]] inline Cycles access_page(std::uint64_t page, std::uint64_t bytes) {
     const Cycles transfer_cycles = bytes_per_cycle_.quotient(bytes + bytes_per_cycle_.value() - 1);
     busy_cycles_ += transfer_cycles;
     ++pages_;
@@ -74,7 +77,7 @@ class DdrTiming::Burst {
       const Cycles start = bus_free_;
       bus_free_ += transfer_cycles;
       bank_[banks_.remainder(page)].ready = bus_free_ - page_hit_cycles_;
-      if (is_observed_) report(page, true, start - page_hit_cycles_, start);
+      report(page, true, start - page_hit_cycles_, start);
       return start;
     }
     page_ = page;
@@ -90,7 +93,7 @@ class DdrTiming::Burst {
     bank.open_page = page;
     bank.ready = bus_free_ - page_hit_cycles_;
     misses_ += !hit;
-    if (is_observed_) report(page, hit, command, start);
+    report(page, hit, command, start);
     return start;
   }
 
@@ -102,22 +105,23 @@ class DdrTiming::Burst {
   }
   void refresh(Cycles now) { next_refresh_ = refresh_until(ddr_, now, bus_free_); }
   void report(std::uint64_t page, bool hit, Cycles command, Cycles start) {
+    if constexpr (!may_be_observed) return;
+    if (ddr_.command_observer_ == nullptr) return;
     ddr_.report_commands(banks_.remainder(page), banks_.quotient(page), hit, command, start, bus_free_);
   }
 
   // Copies of what does not change: a store to a bank could change the original, for all the compiler knows.
   DdrTiming& ddr_;
   Bank* const bank_;
-  const Divisor page_bytes_;
-  const Divisor banks_;
-  const Divisor bytes_per_cycle_;
+  const Division page_bytes_;
+  const Division banks_;
+  const Division bytes_per_cycle_;
   const Cycles page_hit_cycles_;
   const Cycles page_miss_cycles_;
   const Cycles arrival_;
   Cycles turn_round_;
   Cycles bus_free_;
   Cycles next_refresh_;
-  const bool is_observed_;
   std::uint64_t page_ = kNoPage;  ///< that the access before was in
   std::uint64_t bytes_ = 0;
   std::uint64_t pages_ = 0;
@@ -135,20 +139,33 @@ void DdrTiming::report_commands(std::size_t bank, std::uint64_t row, bool hit, C
   command_observer_->moved_data(write, start, finish);
 }
 
+template <class Use>
+DdrTiming::Access DdrTiming::book(bool write, Cycles arrival, const Use& use) {
+  const BusDirection direction = write ? BusDirection::write : BusDirection::read;
+  const bool shifts =
+      page_bytes_.is_power_of_two() && banks_.is_power_of_two() && bytes_per_cycle_.is_power_of_two();
+  if (shifts && command_observer_ == nullptr) {
+    Burst<PowerOfTwo, false> burst(*this, direction, arrival);
+    return burst.finish(use(burst));
+  }
+  Burst<Divisor, true> burst(*this, direction, arrival);
+  return burst.finish(use(burst));
+}
+
 DdrTiming::Access DdrTiming::access(cn::MonoAddress address, std::uint64_t bytes, bool write,
                                     Cycles arrival) {
   if (bytes == 0) return {arrival, arrival, true};
-  Burst burst(*this, write ? BusDirection::write : BusDirection::read, arrival);
-  return burst.finish(burst.access(address, bytes));
+  return book(write, arrival, [&](auto& burst) { return burst.access(address, bytes); });
 }
 
 DdrTiming::Access DdrTiming::access(const MonoPieces::Runs& runs, bool write, Cycles arrival) {
   if (runs.empty()) return {arrival, arrival, true};
-  Burst burst(*this, write ? BusDirection::write : BusDirection::read, arrival);
-  auto run = runs.begin();
-  const Cycles start = burst.access(run->address, run->bytes);
-  for (++run; run != runs.end(); ++run) burst.access(run->address, run->bytes);
-  return burst.finish(start);
+  return book(write, arrival, [&](auto& burst) {
+    auto run = runs.begin();
+    const Cycles start = burst.access(run->address, run->bytes);
+    for (++run; run != runs.end(); ++run) burst.access(run->address, run->bytes);
+    return start;
+  });
 }
 
 Cycles DdrTiming::turn_round(BusDirection direction) {

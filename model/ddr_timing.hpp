@@ -71,7 +71,11 @@ class DdrTiming {
   };
   enum class BusDirection : std::uint8_t { unused, read, write };
 
+  template <class Division, bool may_be_observed>
   class Burst;
+  /// Books what `use` accesses through the burst that it is given.
+  template <class Use>
+  Access book(bool write, Cycles arrival, const Use& use);
   /// Cycles that the data bus rests before it moves data in that direction.
   Cycles turn_round(BusDirection direction);
   /// Books the refreshes due by `now`, at least one.

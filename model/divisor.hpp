@@ -12,6 +12,7 @@ class Divisor {
   explicit Divisor(std::uint64_t value)
       : value_(value), shift_((value & (value - 1)) == 0 ? __builtin_ctzll(value) : -1) {}
 
+  bool is_power_of_two() const { return shift_ >= 0; }
   std::uint64_t value() const { return value_; }
   std::uint64_t quotient(std::uint64_t dividend) const {
     return shift_ >= 0 ? dividend >> shift_ : dividend / value_;
@@ -19,6 +20,21 @@ class Divisor {
   std::uint64_t remainder(std::uint64_t dividend) const {
     return shift_ >= 0 ? dividend & (value_ - 1) : dividend % value_;
   }
+
+ private:
+  std::uint64_t value_;
+  int shift_;
+};
+
+/// A Divisor that is known to be a power of two, for loops in which even the question is too much.
+class PowerOfTwo {
+ public:
+  explicit PowerOfTwo(const Divisor& divisor)
+      : value_(divisor.value()), shift_(__builtin_ctzll(divisor.value())) {}
+
+  std::uint64_t value() const { return value_; }
+  std::uint64_t quotient(std::uint64_t dividend) const { return dividend >> shift_; }
+  std::uint64_t remainder(std::uint64_t dividend) const { return dividend & (value_ - 1); }
 
  private:
   std::uint64_t value_;

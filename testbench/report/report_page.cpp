@@ -10,6 +10,7 @@
 
 #include "testbench/error.hpp"
 #include "testbench/report/report_assets.hpp"
+#include "testbench/statistics_file.hpp"
 #include "testbench/sweep/sweep_table.hpp"
 
 namespace testbench {
@@ -17,8 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-constexpr const char* kRunFormat = "csx600-statistics-1";
 
 std::string read_file(const fs::path& path, const char* allowed) {
   std::ostringstream bytes;
@@ -40,9 +39,9 @@ Json parse(const fs::path& path) {
   const std::string format = json.contains("format") && json["format"].is_string()
                                  ? json["format"].get<std::string>()
                                  : std::string("none");
-  if (format != kRunFormat && format != kSweepFormat)
-    throw InputError(path.string() + ": format: found '" + format + "'; allowed: '" + kRunFormat + "', '" +
-                     kSweepFormat + "'");
+  if (format != kStatisticsFormat && format != kSweepFormat)
+    throw InputError(path.string() + ": format: found '" + format + "'; allowed: '" + kStatisticsFormat +
+                     "', '" + kSweepFormat + "'");
   return json;
 }
 

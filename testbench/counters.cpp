@@ -117,7 +117,21 @@ const Counters<RunCounts>& firmware_counters() {
        [](const RunCounts& c) { return Json(c.rays.passes_per_interval()); }},
       {{"rays_by_interval.*", "count",
         "rays in the ray bin, summed over the passes of each interval of time"},
-       [](const RunCounts& c) { return Json(c.rays.intervals()); }}};
+       [](const RunCounts& c) { return Json(c.rays.intervals()); }},
+      {{"traversal.leaf_loads", "count", "leaves that a ray loaded, with a tree"},
+       [](const RunCounts& c) { return Json(c.traversal.leaf_loads); }},
+      {{"traversal.treelet_loads", "count", "treelets that a ray loaded"},
+       [](const RunCounts& c) { return Json(c.traversal.treelet_loads); }},
+      {{"traversal.rays_by_pass.*", "count",
+        "rays that went through the traversal bin for the first, second, ... time, after their start as pass 0"},
+       [](const RunCounts& c) { return Json(c.traversal.rays); }},
+      {{"traversal.lanes_by_pass.*", "count", "PEs of the blocks that these rays filled"},
+       [](const RunCounts& c) { return Json(c.traversal.lanes); }},
+      {{"traversal.rays_before_tail", "count",
+        "rays that went through the traversal bin, until 95 % of those in the ray bin were through"},
+       [](const RunCounts& c) { return Json(c.traversal.rays_before_tail); }},
+      {{"traversal.lanes_before_tail", "count", "PEs of the blocks that these rays filled"},
+       [](const RunCounts& c) { return Json(c.traversal.lanes_before_tail); }}};
   return counters;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbench/faces.hpp"
 #include "testbench/mono_image.hpp"
 
 namespace testbench {

@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <map>
+#include <numeric>
 #include <optional>
 
+#include "firmware/path_tracer/triangle_record.hpp"
+#include "testbench/bvh/tree_image.hpp"
 #include "testbench/error.hpp"
+#include "testbench/faces.hpp"
 
 namespace testbench {
 namespace {
@@ -36,10 +39,27 @@ CameraRecord camera_record(const Camera& camera, const FilmSize& film) {
   return record;
 }
 
-TriangleRecord triangle_record(const Triangle& triangle, std::int32_t face) {
+TriangleRecord triangle_record(const Triangle& triangle, const path_tracer::TrianglePlace& place) {
   return path_tracer::triangle_record(to_record(triangle.vertex[0]),
                                       to_record(triangle.vertex[1] - triangle.vertex[0]),
-                                      to_record(triangle.vertex[2] - triangle.vertex[0]), face);
+                                      to_record(triangle.vertex[2] - triangle.vertex[0]), place);
+}
+
+/// Around what the firmware takes a triangle for.
+Box padded_box(const Triangle& triangle, double reach) {
+  const path_tracer::PaddedBox<double> box = path_tracer::padded_box(
+      to_record(triangle.vertex[0]), to_record(triangle.vertex[1] - triangle.vertex[0]),
+      to_record(triangle.vertex[2] - triangle.vertex[0]), reach);
+  return {{box.lower.x, box.lower.y, box.lower.z}, {box.upper.x, box.upper.y, box.upper.z}};
+}
+
+/// From anywhere to anywhere: rays start at the camera or on triangles.
+double reach_of(const Scene& scene) {
+  Box all;
+  all.include(scene.camera.position);
+  for (const Triangle& triangle : scene.triangles) all.include(bounds_of(triangle));
+  constexpr double kRoom = 1.125;  // paddings and rounding
+  return kRoom * glm::length(all.upper - all.lower);
 }
 
 SurfaceRecord surface_record(const Triangle& triangle, const Material& material, std::int32_t face) {
@@ -54,6 +74,7 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
 struct Lights {
   std::vector<LightRecord> records;
   std::vector<double> cdf;
+  std::vector<std::array<std::size_t, path_tracer::kLightRun>> triangles;  ///< of each light; one may stand twice
 };
 
 /// Part of the scene that is sampled as one light.
@@ -64,6 +85,7 @@ struct Emitter {
   LightShape shape;
   std::int32_t material;
   std::int32_t face;
+  std::array<std::size_t, path_tracer::kLightRun> triangles;
 };
 
 double area(const Emitter& emitter) {
@@ -91,6 +113,7 @@ std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
     joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
     joined.edge2 = corners_a[(i + 2) % 3] - joined.vertex;
     joined.shape = LightShape::rectangle;
+    joined.triangles = {a.triangles[0], b.triangles[0]};
     const double size = glm::length(joined.edge1) * glm::length(joined.edge2);
     if (std::abs(glm::dot(joined.edge1, joined.edge2)) > kTolerance * size) continue;
     const auto is_corner_of_b = [&](const glm::dvec3& point) {
@@ -114,7 +137,8 @@ std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::in
                           triangle.vertex[2] - triangle.vertex[0],
                           LightShape::triangle,
                           triangle.material,
-                          faces[i]};
+                          faces[i],
+                          {i, i}};
     if (power(emitter, scene) > 0) emitters.push_back(emitter);
   }
   return emitters;
@@ -154,6 +178,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
     record.face = emitter.face;
     record.shape = static_cast<std::int32_t>(emitter.shape);
     lights.records.push_back(record);
+    lights.triangles.push_back(emitter.triangles);
     power_so_far += power(emitter, scene);
     lights.cdf.push_back(power_so_far / total_power);
   }
@@ -165,83 +190,71 @@ void put(MonoImage& image, cn::MonoPointer<Record> to, const Record* records, st
   std::memcpy(image.bytes.data() + to.address, records, count * sizeof(Record));
 }
 
-using Point = std::array<double, 3>;
-using Edge = std::pair<Point, Point>;
-
-Edge make_edge(const glm::dvec3& a, const glm::dvec3& b) {
-  const Point p{a.x, a.y, a.z};
-  const Point q{b.x, b.y, b.z};
-  return p < q ? Edge{p, q} : Edge{q, p};
+TreeImage make_tree(const Scene& scene, double reach, const path_tracer::ProgramConfig& config) {
+  std::vector<Box> boxes;
+  boxes.reserve(scene.triangles.size());
+  for (const Triangle& triangle : scene.triangles) boxes.push_back(padded_box(triangle, reach));
+  return make_tree_image(boxes, config.tree);
 }
 
-/// Within rounding of the plane through `triangle`: 2^-40 of the distances involved.
-bool lies_in_plane(const Triangle& triangle, const Triangle& other) {
-  constexpr double kTolerance = 0x1p-40;
-  const glm::dvec3 normal = glm::normalize(area_normal(triangle));
-  return std::all_of(std::begin(other.vertex), std::end(other.vertex), [&](const glm::dvec3& vertex) {
-    const glm::dvec3 offset = vertex - triangle.vertex[0];
-    return std::abs(glm::dot(offset, normal)) <= kTolerance * glm::length(offset);
-  });
+/// Which of the scene's triangles lie where: leaf by leaf and behind them each light's own, or as they come.
+std::vector<std::size_t> triangles_in_order(const Scene& scene, const Lights& lights, const TreeImage& tree,
+                                            const path_tracer::ProgramConfig& config) {
+  std::vector<std::size_t> order(scene.triangles.size());
+  if (!config.uses_tree()) {
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    return order;
+  }
+  std::transform(tree.triangles.begin(), tree.triangles.end(), order.begin(),
+                 [](std::int32_t triangle) { return std::size_t(triangle); });
+  for (const auto& of_light : lights.triangles) order.insert(order.end(), of_light.begin(), of_light.end());
+  return order;
+}
+
+void put_triangles(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
+                   const std::vector<std::size_t>& order) {
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t triangle = order[i];
+    const TriangleRecord record =
+        triangle_record(scene.triangles[triangle],
+                        {faces[triangle], static_cast<std::int32_t>(triangle), image.layout.reach});
+    put(image, image.layout.triangles + i, &record, 1);
+  }
+}
+
+void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces) {
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const Triangle& triangle = scene.triangles[i];
+    const SurfaceRecord record =
+        surface_record(triangle, scene.materials[std::size_t(triangle.material)], faces[i]);
+    put(image, image.layout.surfaces + i, &record, 1);
+  }
 }
 
 }  // namespace
 
-glm::dvec3 area_normal(const Triangle& triangle) {
-  return glm::cross(triangle.vertex[1] - triangle.vertex[0], triangle.vertex[2] - triangle.vertex[0]);
-}
-
-std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles) {
-  std::map<Edge, std::vector<std::size_t>> by_edge;
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      by_edge[make_edge(triangles[i].vertex[k], triangles[i].vertex[(k + 1) % 3])].push_back(i);
-
-  std::vector<std::int32_t> faces(triangles.size(), path_tracer::kNoFace);
-  std::int32_t next_face = 0;
-  for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
-    if (faces[seed] != path_tracer::kNoFace) continue;
-    faces[seed] = next_face;
-    std::vector<std::size_t> open{seed};
-    while (!open.empty()) {
-      const Triangle& current = triangles[open.back()];
-      open.pop_back();
-      for (int k = 0; k < 3; ++k) {
-        for (const std::size_t neighbour :
-             by_edge[make_edge(current.vertex[k], current.vertex[(k + 1) % 3])]) {
-          if (faces[neighbour] != path_tracer::kNoFace ||
-              !lies_in_plane(triangles[seed], triangles[neighbour]))
-            continue;
-          faces[neighbour] = next_face;
-          open.push_back(neighbour);
-        }
-      }
-    }
-    ++next_face;
-  }
-  return faces;
-}
-
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config) {
   const std::vector<std::int32_t> faces = number_faces(scene.triangles);
   const Lights lights = make_lights(scene, faces, config.light_sampling);
-  std::vector<TriangleRecord> triangles;
-  std::vector<SurfaceRecord> surfaces;
-  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-    const Triangle& triangle = scene.triangles[i];
-    triangles.push_back(triangle_record(triangle, faces[i]));
-    surfaces.push_back(surface_record(triangle, scene.materials[std::size_t(triangle.material)], faces[i]));
-  }
-  const CameraRecord camera = camera_record(scene.camera, scene.film);
+  const double reach = reach_of(scene);
+  TreeImage tree;
+  if (config.uses_tree()) tree = make_tree(scene, reach, config);
 
+  path_tracer::SceneCounts counts;
+  counts.triangles = static_cast<int>(scene.triangles.size());
+  counts.lights = static_cast<int>(lights.records.size());
+  counts.tree_slots = static_cast<int>(tree.slots);
   MonoImage image;
-  image.layout = path_tracer::make_layout(static_cast<int>(triangles.size()),
-                                          static_cast<int>(lights.records.size()), num_pes, config);
+  image.layout = path_tracer::make_layout(counts, num_pes, config);
+  image.layout.reach = reach;
   image.bytes.resize(image.layout.scene_bytes);
+  const CameraRecord camera = camera_record(scene.camera, scene.film);
   put(image, image.layout.camera, &camera, 1);
-  put(image, image.layout.triangles, triangles.data(), triangles.size());
-  put(image, image.layout.surfaces, surfaces.data(), surfaces.size());
+  put_triangles(image, scene, faces, triangles_in_order(scene, lights, tree, config));
+  put_surfaces(image, scene, faces);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
+  if (config.uses_tree()) std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
   return image;
 }
 

@@ -17,10 +17,4 @@ struct MonoImage {
 /// Lays a scene out for the firmware. Throws InputError for a scene without light.
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config);
 
-/// A number for each triangle; triangles that touch along an edge in one plane share it.
-std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles);
-
-/// Twice the area times the unit normal.
-glm::dvec3 area_normal(const Triangle& triangle);
-
 }  // namespace testbench

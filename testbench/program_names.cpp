@@ -15,4 +15,14 @@ const char* light_sampling_name(path_tracer::LightSampling sampling) {
   return sampling == path_tracer::LightSampling::solid_angle ? "solid_angle" : "area";
 }
 
+const char* traversal_name(path_tracer::Traversal traversal) {
+  static constexpr const char* kNames[] = {"brute_force", "treelets"};
+  return kNames[std::size_t(traversal)];
+}
+
+const char* node_format_name(path_tracer::NodeFormat format) {
+  static constexpr const char* kNames[] = {"fp64", "fp32", "quantised8"};
+  return kNames[std::size_t(format)];
+}
+
 }  // namespace testbench

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "testbench/faces.hpp"
 #include "testbench/mono_image.hpp"
 #include "testbench/render.hpp"
 #include "tests/support/native_paths.hpp"

@@ -1,3 +1,4 @@
+#include "testbench/faces.hpp"
 #include "testbench/mono_image.hpp"
 
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "model/chip_presets.hpp"
+#include "testbench/faces.hpp"
 #include "testbench/mono_image.hpp"
 #include "tests/support/scenes.hpp"
 

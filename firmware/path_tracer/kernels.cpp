@@ -3,35 +3,27 @@
 #include "firmware/path_tracer/kernels.hpp"
 
 #include "firmware/path_tracer/light_sampling.hpp"
+#include "firmware/path_tracer/places.hpp"
 #include "firmware/path_tracer/sampler.hpp"
-#include "firmware/path_tracer/triangle.hpp"
 
 namespace path_tracer {
-namespace {
 
-poly<MonoAddress> place_of(MonoAddress first, const poly<std::int32_t>& index, std::size_t record_bytes) {
-  const cn::WideProduct offset =
-      cn::multiply_wide(cn::reinterpret_word<std::uint32_t>(index), static_cast<std::uint32_t>(record_bytes));
-  return cn::join_words(offset) + first;
-}
+const TraversalKernels& TRAVERSAL_KERNELS();
+
+namespace {
 
 mask kept_mask(const LaneMask& lanes) {
   return cn::recall(lanes);
 }
 
 void intersect(const IntersectArguments& arguments) {
-  const Point3 origin = arguments.ray.get(&RayRecord::origin);
-  const Direction3 direction = arguments.ray.get(&RayRecord::direction);
-  const Nearest nearest = nearest_triangle(origin, direction, arguments.ray.get(&RayRecord::left_face),
-                                           arguments.triangles, arguments.triangle_count);
-  const mask hit = nearest.triangle >= 0;
-  const mask front = nearest.determinant > 0.0;
-  const poly<double> distance = nearest.distance / cn::abs(nearest.determinant);
-  arguments.hit.set(&HitRecord::position, origin + direction * distance);
-  arguments.hit.set(&HitRecord::hit, cn::select(hit, poly<std::int32_t>(1), poly<std::int32_t>(0)));
-  arguments.hit.set(&HitRecord::front, cn::select(front, poly<std::int32_t>(1), poly<std::int32_t>(0)));
-  arguments.surface_place.write(place_of(arguments.surfaces, nearest.triangle, sizeof(SurfaceRecord)));
-  cn::keep(hit, *arguments.hit_something);
+  const RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
+                        arguments.ray.get(&RayRecord::left_face)};
+  Nearest nearest;
+  search(ray, arguments.reach, MonoTriangles{arguments.triangles, arguments.triangle_count}, nearest);
+  write_hit(nearest, ray.origin, ray.direction, arguments.hit);
+  arguments.surface_place.write(place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord)));
+  cn::keep(nearest.number >= 0, *arguments.hit_something);
 }
 
 poly<double> largest(const vec3<poly<double>>& v) {
@@ -61,6 +53,7 @@ void aim(const ScatterArguments& arguments, const Surface& surface, const mask& 
   arguments.shadow_ray.set(&RayRecord::origin, surface.position);
   arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
   arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
+  arguments.shadow_ray.set(&RayRecord::light_face, light.get(&LightRecord::face));
   arguments.lighting.set(&LightingRecord::weight, surface.reflectance * scale);
   arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
   cn::keep(arguments.cull_shadow_rays ? wants_light & facing : wants_light, *arguments.casts);
@@ -153,6 +146,7 @@ void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_
   arguments.ray.set(&RayRecord::origin, ray.origin);
   arguments.ray.set(&RayRecord::direction, ray.direction);
   arguments.ray.set(&RayRecord::left_face, poly<std::int32_t>(kNoFace));
+  arguments.ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
   arguments.next_path.set(&PathRecord::pixel, pixel);
   arguments.next_path.set(&PathRecord::sample, sample);
   arguments.next_path.set(&PathRecord::depth, poly<std::int32_t>(0));
@@ -165,6 +159,7 @@ void continue_path(const ReplaceArguments& arguments) {
   arguments.ray.set(&RayRecord::origin, arguments.scatter.get(&ScatterRecord::position));
   arguments.ray.set(&RayRecord::direction, arguments.scatter.get(&ScatterRecord::direction));
   arguments.ray.set(&RayRecord::left_face, arguments.scatter.get(&ScatterRecord::face));
+  arguments.ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
   arguments.next_path.set(&PathRecord::pixel, arguments.path.get(&PathRecord::pixel));
   arguments.next_path.set(&PathRecord::sample, arguments.path.get(&PathRecord::sample));
   arguments.next_path.set(&PathRecord::depth, arguments.path.get(&PathRecord::depth) + 1);
@@ -279,6 +274,7 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<FinishedPlaceArguments, finished_place>("finished_place"),
       cn::kernel<ListArguments, list>("list"),
       cn::kernel<FoldArguments, fold>("fold"),
+      TRAVERSAL_KERNELS,
   };
   return table;
 }

@@ -3,23 +3,19 @@
 #include "firmware/cn/kernel.hpp"
 #include "firmware/cn/level.hpp"
 #include "firmware/path_tracer/program.hpp"
+#include "firmware/path_tracer/traversal_kernels.hpp"
 
 /// The poly programs of the path tracer: their arguments and the table of entry points. Poly pointers name
 /// SRAM, plain pointers mono memory that the control unit reads, `LaneMask*` the conditions a kernel leaves
 /// to the control unit.
 namespace path_tracer {
 
-using cn::LaneMask;
-using cn::Level;
-using cn::MonoAddress;
-using cn::PolyField;
-using cn::PolyPointer;
-
 /// Ray stage: the nearest triangle along each ray, tested one by one.
 struct IntersectArguments {
   PolyPointer<RayRecord> ray;
   const TriangleRecord* triangles = nullptr;
   int triangle_count = 0;
+  double reach = 0;  ///< of the scene (triangle_record.hpp)
   MonoAddress surfaces = 0;
   PolyPointer<HitRecord> hit;
   PolyField<MonoAddress> surface_place;  ///< kept for the intersection stage's gather
@@ -145,6 +141,7 @@ struct Kernels {
   cn::Kernel<FinishedPlaceArguments> finished_place;
   cn::Kernel<ListArguments> list;
   cn::Kernel<FoldArguments> fold;
+  const TraversalKernels& (*traversal)();  ///< of the same level
 };
 
 const Kernels& kernels(Level level);

@@ -14,6 +14,7 @@ enum class NodeFormat : std::uint8_t {
   /// Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
   quantised8,
 };
+inline constexpr int kNodeFormats = 3;
 
 /// Where a child leads. `count` triangles from `first` on; or the node in slot `first`, when count is 0; or
 /// nowhere.
@@ -23,6 +24,27 @@ struct ChildReference {
   std::int32_t count = kNowhere;
 };
 
+/// A ChildReference as a node holds it, in 4 bytes. The top bit is free for those who keep references.
+struct PackedReference {
+  static constexpr int kFirstBits = 26;
+  static constexpr std::uint32_t kFirstMask = (1u << kFirstBits) - 1;
+  static constexpr std::uint32_t kCountMask = 31;  ///< of the bits above `first`
+  static constexpr std::int32_t kMaxCount = 30;
+  static constexpr std::uint32_t kNowhere = kCountMask << kFirstBits;
+  static constexpr std::uint32_t kFlag = 1u << 31;
+
+  static constexpr std::uint32_t pack(const ChildReference& reference) {
+    if (reference.count == ChildReference::kNowhere) return kNowhere;
+    return static_cast<std::uint32_t>(reference.count) << kFirstBits |
+           static_cast<std::uint32_t>(reference.first);
+  }
+  static constexpr ChildReference unpack(std::uint32_t packed) {
+    if (packed == kNowhere) return {};
+    return {static_cast<std::int32_t>(packed & kFirstMask),
+            static_cast<std::int32_t>(packed >> kFirstBits & kCountMask)};
+  }
+};
+
 /// Of quantised8: coordinate = origin + step * 2^exponent, exact in double precision but for its sum.
 struct QuantisedFrame {
   double origin[3];
@@ -30,7 +52,7 @@ struct QuantisedFrame {
   std::int16_t unused;
 };
 
-/// Byte offsets within a node of `width` children: its boxes first, then width ChildReferences. Boxes lie
+/// Byte offsets within a node of `width` children: its boxes first, then width packed references. Boxes lie
 /// component by component (lower x, y, z, upper x, y, z), each of all children side by side.
 struct NodeLayout {
   NodeFormat format = NodeFormat::fp32;
@@ -47,9 +69,9 @@ struct NodeLayout {
   }
   constexpr int reference_offset(int child) const {
     const int boxes_end = coordinate_offset(6, 0);
-    return (boxes_end + 7) / 8 * 8 + child * static_cast<int>(sizeof(ChildReference));
+    return (boxes_end + 7) / 8 * 8 + child * static_cast<int>(sizeof(std::uint32_t));
   }
-  constexpr int node_bytes() const { return reference_offset(width); }
+  constexpr int node_bytes() const { return (reference_offset(width) + 7) / 8 * 8; }
 };
 
 }  // namespace path_tracer

@@ -10,13 +10,13 @@ namespace {
 constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config) {
-  return std::max(
-      {RayStage::kLoadBytes, IntersectionStage::load_bytes(config.program), PathStage::kLoadBytes});
+  return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config.program), PathStage::kLoadBytes,
+                   config.uses_tree() ? TraverseStage::load_bytes(config.tree) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  return std::max(
-      {RayStage::kSaveBytes, IntersectionStage::save_bytes(config.program), PathStage::kSaveBytes});
+  return std::max({RayStage::kSaveBytes, IntersectionStage::save_bytes(config.program), PathStage::kSaveBytes,
+                   config.uses_tree() ? TraversalStage::kSaveBytes : 0});
 }
 
 const ProgramConfig& valid(const ProgramConfig& config) {
@@ -75,9 +75,12 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       ray_stage_(context(loads_, saves_)),
       intersection_stage_(context(loads_, saves_)),
       path_stage_(context(loads_, saves_), work),
-      radiance_stage_(context(radiance_loads_, radiance_saves_)) {}
+      radiance_stage_(context(radiance_loads_, radiance_saves_)) {
+  if (config.uses_tree()) tree_.emplace(context(loads_, saves_));
+}
 
 void PathTracer::run(const Progress& progress) {
+  if (tree_) tree_->load_resident_nodes();
   fill_bins();
   while (true) {
     issue_loads();
@@ -105,20 +108,46 @@ void PathTracer::fill_bins() {
     path_stage_.save(step, block);
     report_fill(block);
     live_blocks_.push_back(block);
-    plan(ray_stage_, block);
+    plan(ray_stage(), block);
   }
   plan_pass();
 }
 
-/// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before.
+/// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before. With a
+/// tree, how many steps follow shows while they run.
 void PathTracer::plan_pass() {
   count_rays();
-  for (const int block : live_blocks_) plan(intersection_stage_, block);
-  for (const int block : live_blocks_) plan(path_stage_, block);
   path_steps_left_ = static_cast<int>(live_blocks_.size());
   counts_.blocks += live_blocks_.size();
   if (!live_blocks_.empty()) counts_.skipped_blocks += std::size_t(config_.bin_blocks) - live_blocks_.size();
+  pass_blocks_.swap(live_blocks_);
   live_blocks_.clear();
+  if (tree_) {
+    traversal_steps_left_ = path_steps_left_;
+    tree_->begin_pass();
+  } else {
+    plan_after_rays();
+  }
+}
+
+void PathTracer::plan_after_rays() {
+  if (tree_)
+    for (const int block : pass_blocks_) plan(tree_->recall(), block);
+  for (const int block : pass_blocks_) plan(intersection_stage_, block);
+  for (const int block : pass_blocks_) plan(path_stage_, block);
+}
+
+void PathTracer::after_traversal_step() {
+  const auto plan_block = [&](std::optional<int> block) {
+    if (!block) return false;
+    plan(tree_->traverse(), *block);
+    ++traversal_steps_left_;
+    return true;
+  };
+  --traversal_steps_left_;
+  while (plan_block(tree_->bin().take_full())) {
+  }
+  if (traversal_steps_left_ == 0 && !plan_block(tree_->bin().take_rest())) plan_after_rays();
 }
 
 void PathTracer::count_rays() {
@@ -130,12 +159,22 @@ void PathTracer::count_rays() {
 /// A step's records come from earlier steps on the same block of the bins. Few live blocks bring the two so
 /// close that the earlier one has not run yet.
 bool PathTracer::can_load(const Step& step) const {
-  return std::none_of(loading_.begin(), loading_.end(),
-                      [&](const Step& earlier) { return earlier.block == step.block; });
+  return !step.stage->works_on_slots() ||
+         std::none_of(loading_.begin(), loading_.end(), [&](const Step& earlier) {
+           return earlier.block == step.block && earlier.stage->works_on_slots();
+         });
+}
+
+/// How many steps may be loaded at a time, the one to be processed included. What is prepared is loaded so much
+/// earlier that its second loads, too, begin n steps ahead.
+std::size_t PathTracer::look_ahead(const Step& step) const {
+  const int buffers = config_.load_buffers();
+  return static_cast<std::size_t>(step.stage->prepares() ? 2 * buffers - 1 : buffers);
 }
 
 void PathTracer::issue_loads() {
-  while (loading_.size() < std::size_t(config_.load_buffers()) && !bin_steps_.empty() &&
+  for (Step& step : loading_) step.just_loaded = false;
+  while (!bin_steps_.empty() && loading_.size() < look_ahead(bin_steps_.front()) &&
          can_load(bin_steps_.front())) {
     Step step = bin_steps_.front();
     bin_steps_.pop_front();
@@ -143,6 +182,19 @@ void PathTracer::issue_loads() {
     label(step);
     step.stage->load(step.number, step.block);
     loading_.push_back(step);
+  }
+  prepare_steps();
+}
+
+/// A step whose loads have just begun can wait for its turn, so that others need not wait for them.
+void PathTracer::prepare_steps() {
+  const std::size_t steps = std::min(loading_.size(), std::size_t(config_.load_buffers()));
+  for (std::size_t i = 0; i < steps; ++i) {
+    Step& step = loading_[i];
+    if (step.is_prepared || !step.stage->prepares() || (i > 0 && step.just_loaded)) continue;
+    label(step);
+    step.stage->prepare(step.number, step.block);
+    step.is_prepared = true;
   }
 }
 
@@ -163,6 +215,7 @@ void PathTracer::run_bin_step() {
   step.stage->process(step.number, step.block);
   step.stage->save(step.number, step.block);
   if (step.stage == &path_stage_) after_path_step(step);
+  if (tree_ && is_ray_step(step)) after_traversal_step();
 }
 
 void PathTracer::after_path_step(const Step& step) {
@@ -171,7 +224,7 @@ void PathTracer::after_path_step(const Step& step) {
   report_fill(step.block);
   if (bins_.blocks[std::size_t(step.block)].live.any()) {
     live_blocks_.push_back(step.block);
-    plan(ray_stage_, step.block);
+    plan(ray_stage(), step.block);
   }
   if (--path_steps_left_ > 0) return;
   plan_radiance_of_pass();

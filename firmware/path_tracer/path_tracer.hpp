@@ -2,8 +2,10 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 
 #include "firmware/path_tracer/stages.hpp"
+#include "firmware/path_tracer/traversal_stages.hpp"
 
 namespace path_tracer {
 
@@ -41,13 +43,23 @@ class PathTracer {
   struct Step {
     Stage* stage;
     int block;
-    std::uint64_t number;  ///< in the order of loading, which is that of processing
+    std::uint64_t number = 0;   ///< in the order of loading, which is that of processing
+    bool just_loaded = true;    ///< its loads were begun after the last step was processed
+    bool is_prepared = false;   ///< Stage::prepare()
   };
   using Steps = std::deque<Step>;
 
-  void plan(Stage& stage, int block) { bin_steps_.push_back({&stage, block, 0}); }
-  void plan_radiance(Stage& stage, int block) { radiance_steps_.push_back({&stage, block, 0}); }
-  bool is_ray_step(const Step& step) const { return step.stage == &ray_stage_; }
+  void plan(Stage& stage, int block) { bin_steps_.push_back({&stage, block}); }
+  void plan_radiance(Stage& stage, int block) { radiance_steps_.push_back({&stage, block}); }
+  /// The stage that takes rays out of the ray bin.
+  Stage& ray_stage() {
+    if (tree_) return tree_->begin();
+    return ray_stage_;
+  }
+  bool is_ray_step(const Step& step) {
+    return step.stage == &ray_stage() || (tree_ && step.stage == &tree_->traverse());
+  }
+  std::size_t look_ahead(const Step& step) const;
   bool can_load(const Step& step) const;
   void label(const Step& step);
   void report_fill(int block);
@@ -58,10 +70,13 @@ class PathTracer {
 
   void fill_bins();
   void issue_loads();
+  void prepare_steps();
   void run_bin_step();
   void run_ray_step_with_radiance();
   void after_path_step(const Step& step);
   void plan_pass();
+  void plan_after_rays();
+  void after_traversal_step();
   void count_rays();
   void plan_radiance_of_pass();
   void plan_list_step();
@@ -86,6 +101,7 @@ class PathTracer {
   TransferRing radiance_loads_;
   TransferRing radiance_saves_;
   RayStage ray_stage_;
+  std::optional<TreeTraversal> tree_;
   IntersectionStage intersection_stage_;
   PathStage path_stage_;
   RadianceStage radiance_stage_;
@@ -94,6 +110,8 @@ class PathTracer {
   Steps loading_;    ///< their loads are under way or done; the front is processed next
   std::uint64_t next_step_ = 0;
   std::vector<int> live_blocks_;      ///< of the pass that is being planned
+  std::vector<int> pass_blocks_;      ///< of the pass that runs
+  int traversal_steps_left_ = 0;      ///< that are planned
   int path_steps_left_ = 0;           ///< of the pass that runs
   std::uint64_t last_path_step_ = 0;  ///< which saves the list of finished paths
 

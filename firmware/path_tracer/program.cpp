@@ -29,6 +29,20 @@ void require(bool ok, const std::string& what, const std::string& found, const s
 
 }  // namespace
 
+void validate(const TreeShape& tree) {
+  const auto range = [](const std::string& what, int value, int least, int most) {
+    require(value >= least && value <= most, what, std::to_string(value),
+            std::to_string(least) + " to " + std::to_string(most));
+  };
+  range("children a node", tree.layout.width, kTraversalWidth, kTraversalWidth);
+  range("triangles a leaf", tree.leaf_triangles, 1, kMaxLeafTriangles);
+  range("nodes a treelet", tree.treelet_nodes, 1, kMaxTreeletNodes);
+  range("resident nodes", tree.resident_nodes, 1, kMaxTreeletNodes);
+  range("entries of the short stack", tree.stack_entries, 0, kMaxStackEntries);
+  require((tree.stack_entries & (tree.stack_entries - 1)) == 0, "entries of the short stack",
+          std::to_string(tree.stack_entries), "0 or a power of two up to " + std::to_string(kMaxStackEntries));
+}
+
 void PassCounts::add(std::uint64_t count) {
   if (passes_ == passes_per_interval_ * kMaxIntervals) {
     for (std::size_t i = 0; i < kMaxIntervals / 2; ++i)
@@ -56,24 +70,41 @@ void validate(const ProgramConfig& config) {
               std::to_string(kMaxSlotVertices));
   require(config.roulette_start >= 0, "roulette start", std::to_string(config.roulette_start),
           "0 or more segments");
+  if (config.uses_tree()) validate(config.tree);
   require(config.max_survival > 0 && config.max_survival < 1, "largest survival probability",
           std::to_string(config.max_survival), "above 0 and below 1");
 }
 
-Layout make_layout(int triangle_count, int light_count, int num_pes, const ProgramConfig& config) {
+int traversal_bin_blocks(const ProgramConfig& config) {
+  return config.bin_blocks + 2 * config.load_buffers() + config.save_buffers();
+}
+
+Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& config) {
   const auto slots = std::uint64_t(num_pes) * std::uint64_t(config.bin_blocks);
+  const TreeShape& tree = config.tree;
   Layout layout;
   MonoAllocator memory(layout.regions);
-  layout.triangle_count = triangle_count;
-  layout.light_count = light_count;
+  layout.triangle_count = scene.triangles;
+  layout.light_count = scene.lights;
   layout.camera = memory.take<CameraRecord>("camera", 1);
-  layout.triangles = memory.take<TriangleRecord>("triangles", std::uint64_t(triangle_count));
-  layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(triangle_count));
-  layout.lights = memory.take<LightRecord>("lights", std::uint64_t(light_count));
-  layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(light_count));
+  // Leaves are loaded in one size, so that the last one reaches beyond the last triangle.
+  const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
+  layout.triangles = memory.take<TriangleRecord>("triangles", std::uint64_t(scene.triangles + behind_triangles));
+  layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles));
+  layout.lights = memory.take<LightRecord>("lights", std::uint64_t(scene.lights));
+  layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(scene.lights));
+  if (config.uses_tree())
+    layout.nodes = memory.take<std::uint64_t>(
+        "nodes", std::uint64_t(scene.tree_slots) * std::uint64_t(tree.layout.node_bytes()) / 8);
   layout.scene_bytes = memory.used_bytes();
   layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
+  if (config.uses_tree())
+    layout.traversal_bin = memory.take<std::uint64_t>(
+        "traversal bin", std::uint64_t(num_pes) * std::uint64_t(traversal_bin_blocks(config)) *
+                             std::uint64_t(tree.record_bytes()) / 8);
   layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots);
+  if (config.uses_tree())
+    layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
   layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots);
   layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots);
   layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);

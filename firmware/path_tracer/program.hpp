@@ -7,6 +7,7 @@
 
 #include "firmware/cn/machine.hpp"
 #include "firmware/path_tracer/records.hpp"
+#include "firmware/path_tracer/traversal_record.hpp"
 
 namespace path_tracer {
 
@@ -27,6 +28,12 @@ enum class Sampler : std::uint8_t {
 enum class LightSampling : std::uint8_t {
   area,         ///< uniform on its surface
   solid_angle,  ///< uniform in the solid angle it takes, warped to the cosine at the lit surface
+};
+
+/// How a ray finds the triangles that it may hit.
+enum class Traversal : std::uint8_t {
+  brute_force,  ///< it is tested against every one
+  treelets,     ///< a tree, of which each PE loads the piece that its ray asks for; rays wait in a temporary bin
 };
 
 inline constexpr int kMaxBuffers = 8;
@@ -52,7 +59,10 @@ struct ProgramConfig {
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   std::uint64_t seed = 1;
+  Traversal traversal = Traversal::brute_force;
+  TreeShape tree;
 
+  bool uses_tree() const { return traversal != Traversal::brute_force; }
   bool casts_shadow_rays() const { return program != Program::segments; }
   bool buffers_loads() const { return buffer_loads && n > 0; }
   bool buffers_saves() const { return buffer_saves && n > 0; }
@@ -74,6 +84,14 @@ class ProgramError : public std::runtime_error {
 
 /// Throws ProgramError that names the argument, the value and what is allowed.
 void validate(const ProgramConfig& config);
+void validate(const TreeShape& tree);
+
+/// What decides how much mono memory a scene takes.
+struct SceneCounts {
+  int triangles = 0;
+  int lights = 0;
+  int tree_slots = 0;  ///< of nodes; 0 without a tree
+};
 
 /// Where everything lies in mono memory.
 struct Layout {
@@ -83,12 +101,16 @@ struct Layout {
   cn::MonoPointer<SurfaceRecord> surfaces;
   cn::MonoPointer<LightRecord> lights;
   cn::MonoPointer<double> light_cdf;  ///< probability of light 0..i, one a light
-  int triangle_count = 0;
+  cn::MonoPointer<std::uint64_t> nodes;
+  int triangle_count = 0;  ///< with a tree, triangles lie leaf by leaf, and behind them kLightRun a light
   int light_count = 0;
+  double reach = 0;  ///< no ray starts farther from a vertex (triangle_record.hpp)
 
   // Bins, one record a slot (vertices: slot_vertices a slot).
   cn::MonoPointer<RayRecord> ray_bin;
+  cn::MonoPointer<std::uint64_t> traversal_bin;
   cn::MonoPointer<HitRecord> intersection_bin;
+  cn::MonoPointer<cn::MonoAddress> surface_place_bin;  ///< with a tree, or PEs keep them
   cn::MonoPointer<ScatterRecord> scatter_bin;
   cn::MonoPointer<LightingRecord> lighting_bin;
   cn::MonoPointer<DirectLightRecord> direct_light_bin;
@@ -113,7 +135,10 @@ struct Layout {
   std::vector<Region> regions;
 };
 
-Layout make_layout(int triangle_count, int light_count, int num_pes, const ProgramConfig& config);
+Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& config);
+
+/// Blocks of the traversal bin's ring: all rays at once, and room for blocks that are being loaded or saved.
+int traversal_bin_blocks(const ProgramConfig& config);
 
 /// A count by pass, in at most kMaxIntervals intervals of as many passes each; the last one may be shorter.
 /// Two intervals become one when there are too many.
@@ -133,6 +158,17 @@ class PassCounts {
   std::vector<std::uint64_t> intervals_;
 };
 
+/// Of the traversal bin.
+struct TraversalCounts {
+  std::uint64_t leaf_loads = 0;     ///< rays that loaded a leaf
+  std::uint64_t treelet_loads = 0;  ///< rays that loaded a treelet
+  std::vector<std::uint64_t> rays;   ///< by pass, from the one that takes rays out of the ray bin
+  std::vector<std::uint64_t> lanes;  ///< by pass: PEs of the blocks that they filled
+  /// Until 95 % of the rays of a bin were through:
+  std::uint64_t rays_before_tail = 0;
+  std::uint64_t lanes_before_tail = 0;
+};
+
 /// Counts that belong to the firmware, not to the chip.
 struct RunCounts {
   std::uint64_t paths = 0;
@@ -144,6 +180,7 @@ struct RunCounts {
   std::uint64_t steps = 0;
   std::vector<std::uint64_t> paths_by_segments;  ///< [s]: paths that ended with s segments
   PassCounts rays;                               ///< in the ray bin, segments and shadow rays, by pass
+  TraversalCounts traversal;
 };
 
 }  // namespace path_tracer

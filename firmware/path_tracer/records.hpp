@@ -27,22 +27,12 @@ struct CameraRecord {
 /// shadowing itself.
 struct TriangleRecord {
   vec3<double> vertex{};
-  vec3<double> edge1{};
+  vec3<double> edge1{};  ///< the edges and `back` times one power of two, see triangle_record()
   vec3<double> edge2{};
   vec3<double> back{};  ///< edge2 x edge1, away from the front
   std::int32_t face = kNoFace;
-  std::int32_t unused = 0;
+  std::int32_t number = 0;  ///< in the scene; of hits at the same distance the lowest counts
 };
-
-/// The cross product in the host's extended precision: long thin triangles cancel most of its digits, and it
-/// is made only once.
-inline TriangleRecord triangle_record(const vec3<double>& vertex, const vec3<double>& edge1,
-                                      const vec3<double>& edge2, std::int32_t face) {
-  const vec3<long double> a{edge2.x, edge2.y, edge2.z};
-  const vec3<long double> b{edge1.x, edge1.y, edge1.z};
-  const vec3<long double> back = cn::cross(a, b);
-  return {vertex, edge1, edge2, {double(back.x), double(back.y), double(back.z)}, face, 0};
-}
 
 /// For shading, one a triangle: "around 10 double precision floats" (paper, section 4.1).
 struct SurfaceRecord {
@@ -74,8 +64,8 @@ struct LightRecord {
 struct RayRecord {
   vec3<double> origin{};
   vec3<double> direction{};
-  std::int32_t left_face = kNoFace;  ///< the face that the ray leaves
-  std::int32_t unused = 0;
+  std::int32_t left_face = kNoFace;   ///< the face that the ray leaves
+  std::int32_t light_face = kNoFace;  ///< of a shadow ray: the face that it looks for
 };
 
 /// Intersection bin.

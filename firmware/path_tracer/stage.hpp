@@ -70,7 +70,12 @@ class Stage {
 
   /// Its name, for observers.
   virtual const char* bin() const = 0;
+  /// Whether its blocks are slots of the bins; otherwise they are its own.
+  virtual bool works_on_slots() const { return true; }
   virtual void load(std::uint64_t step, int block) = 0;
+  /// Of stages whose loads tell what else is to be loaded: when those have come, loads that, too.
+  virtual bool prepares() const { return false; }
+  virtual void prepare(std::uint64_t /*step*/, int /*block*/) {}
   virtual void process(std::uint64_t step, int block) = 0;
   virtual void save(std::uint64_t step, int block) = 0;
 

@@ -6,14 +6,16 @@
 #include <memory>
 #include <string>
 
+#include "firmware/path_tracer/node_layout.hpp"
 #include "testbench/error.hpp"
 
 namespace testbench {
 namespace {
 
-constexpr int kMaxLeafTriangles = RTC_BUILD_MAX_PRIMITIVES_PER_LEAF;
-/// Beyond what a balanced tree of 2^32 triangles needs; where centroids coincide Embree halves by count.
-constexpr unsigned kMaxDepth = 128;
+constexpr int kMaxLeafTriangles = path_tracer::PackedReference::kMaxCount;
+static_assert(kMaxLeafTriangles <= RTC_BUILD_MAX_PRIMITIVES_PER_LEAF);
+/// Embree splits by number 8 levels before the depth that it is given.
+constexpr int kLeastMaxDepth = 16;
 
 /// A node as Embree's callbacks leave it, in Embree's own memory.
 struct Branch {
@@ -61,24 +63,25 @@ void check(const BvhOptions& options) {
   require(options.width >= 2 && options.width <= kMaxBvhWidth, "width", options.width, 2, kMaxBvhWidth);
   require(options.max_leaf_triangles >= 1 && options.max_leaf_triangles <= kMaxLeafTriangles,
           "number of triangles a leaf", options.max_leaf_triangles, 1, kMaxLeafTriangles);
+  require(options.max_depth >= kLeastMaxDepth && options.max_depth <= 128, "depth", options.max_depth,
+          kLeastMaxDepth, 128);
 }
 
 /// Embree splits in single precision: boxes go there as parts of the scene's box, so that any scale will do.
 /// Rounding may put a triangle on the other side of a split, never out of the tree.
-std::vector<RTCBuildPrimitive> primitives_of(const std::vector<Triangle>& triangles) {
+std::vector<RTCBuildPrimitive> primitives_of(const std::vector<Box>& boxes) {
   Box scene;
-  for (const Triangle& triangle : triangles) scene.include(bounds_of(triangle));
+  for (const Box& box : boxes) scene.include(box);
   // Halved before they are subtracted: the differences of the largest numbers overflow.
   const glm::dvec3 half_size = 0.5 * scene.upper - 0.5 * scene.lower;
   const double largest = std::max({half_size.x, half_size.y, half_size.z});
   const auto relative = [&](const glm::dvec3& point) {
     return largest > 0.0 ? glm::vec3((point * 0.5 - scene.lower * 0.5) / largest) : glm::vec3(0.0f);
   };
-  std::vector<RTCBuildPrimitive> primitives(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const Box box = bounds_of(triangles[i]);
-    const glm::vec3 lower = relative(box.lower);
-    const glm::vec3 upper = relative(box.upper);
+  std::vector<RTCBuildPrimitive> primitives(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const glm::vec3 lower = relative(boxes[i].lower);
+    const glm::vec3 upper = relative(boxes[i].upper);
     primitives[i] = {lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, static_cast<unsigned>(i)};
   }
   return primitives;
@@ -87,7 +90,7 @@ std::vector<RTCBuildPrimitive> primitives_of(const std::vector<Triangle>& triang
 /// Copies Embree's tree, parents first, with exact boxes.
 class Copier {
  public:
-  Copier(const std::vector<Triangle>& triangles, Bvh& bvh) : triangles_(triangles), bvh_(bvh) {}
+  Copier(const std::vector<Box>& boxes, Bvh& bvh) : boxes_(boxes), bvh_(bvh) {}
 
   void copy_root(const Branch& root) {
     if (root.child_count > 0) {
@@ -126,24 +129,43 @@ class Copier {
     child.triangle_count = static_cast<std::int32_t>(branch.triangle_count);
     for (std::uint32_t i = 0; i < branch.triangle_count; ++i) {
       bvh_.triangles.push_back(static_cast<std::int32_t>(branch.triangle[i]));
-      child.box.include(bounds_of(triangles_[branch.triangle[i]]));
+      child.box.include(boxes_[branch.triangle[i]]);
     }
     std::sort(bvh_.triangles.end() - child.triangle_count, bvh_.triangles.end());
     return child;
   }
 
-  const std::vector<Triangle>& triangles_;
+  const std::vector<Box>& boxes_;
   Bvh& bvh_;
 };
 
 }  // namespace
 
 Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhOptions& options) {
+  std::vector<Box> boxes(triangles.size());
+  std::transform(triangles.begin(), triangles.end(), boxes.begin(), bounds_of);
+  return build_bvh(boxes, options);
+}
+
+int levels(const Bvh& bvh) {
+  std::vector<int> level(bvh.nodes.size(), 1);  // nodes stand before their children
+  int deepest = 0;
+  for (std::size_t node = 0; node < bvh.nodes.size(); ++node) {
+    deepest = std::max(deepest, level[node]);
+    for (int i = 0; i < bvh.nodes[node].child_count; ++i) {
+      const BvhChild& child = bvh.nodes[node].child[std::size_t(i)];
+      if (!child.is_leaf()) level[std::size_t(child.node)] = level[node] + 1;
+    }
+  }
+  return deepest;
+}
+
+Bvh build_bvh(const std::vector<Box>& boxes, const BvhOptions& options) {
   check(options);
   Bvh bvh;
   bvh.width = options.width;
-  if (triangles.empty()) return bvh;
-  std::vector<RTCBuildPrimitive> primitives = primitives_of(triangles);
+  if (boxes.empty()) return bvh;
+  std::vector<RTCBuildPrimitive> primitives = primitives_of(boxes);
 
   // One thread: the order in which several allocate and split is not the same every time.
   const std::unique_ptr<RTCDeviceTy, ReleaseDevice> device(rtcNewDevice("threads=1,user_threads=1"));
@@ -153,7 +175,7 @@ Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhOptions& options)
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;  // binned SAH
   arguments.maxBranchingFactor = static_cast<unsigned>(options.width);
-  arguments.maxDepth = kMaxDepth;
+  arguments.maxDepth = static_cast<unsigned>(options.max_depth);
   arguments.maxLeafSize = static_cast<unsigned>(options.max_leaf_triangles);
   arguments.traversalCost = static_cast<float>(options.traversal_cost);
   arguments.intersectionCost = static_cast<float>(options.intersection_cost);
@@ -166,10 +188,10 @@ Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhOptions& options)
   arguments.createLeaf = create_leaf;
   const auto* const root = static_cast<const Branch*>(rtcBuildBVH(&arguments));
   if (root == nullptr)
-    throw RunError("BVH of " + std::to_string(triangles.size()) + " triangles: Embree's error " +
+    throw RunError("BVH of " + std::to_string(boxes.size()) + " triangles: Embree's error " +
                    std::to_string(rtcGetDeviceError(device.get())));
-  bvh.triangles.reserve(triangles.size());
-  Copier(triangles, bvh).copy_root(*root);
+  bvh.triangles.reserve(boxes.size());
+  Copier(boxes, bvh).copy_root(*root);
   return bvh;
 }
 

@@ -10,11 +10,12 @@ namespace {
 using path_tracer::ChildReference;
 using path_tracer::NodeFormat;
 using path_tracer::NodeLayout;
+using path_tracer::PackedReference;
 using path_tracer::QuantisedFrame;
 
 constexpr int kAxes = 3;
 constexpr int kSteps = 255;
-constexpr int kLeastExponent = -1074;  // of the smallest double
+constexpr int kLeastExponent = -1022;  // of a double that the chip makes of its exponent
 constexpr int kLargestExponent = 1023;
 
 template <class T>
@@ -111,7 +112,8 @@ void encode_node(const BvhNode& node, const NodeLayout& layout, const std::vecto
   for (int i = 0; i < layout.width; ++i) {
     const bool exists = i < node.child_count;
     store(to, layout.reference_offset(i),
-          exists ? reference_to(node.child[std::size_t(i)], slot_of_node) : ChildReference{});
+          PackedReference::pack(exists ? reference_to(node.child[std::size_t(i)], slot_of_node)
+                                       : ChildReference{}));
     if (exists) encode_box(node.child[std::size_t(i)].box, layout, frame, i, to);
   }
 }
@@ -134,7 +136,7 @@ Box decode_box(const std::uint8_t* node, const NodeLayout& layout, int child) {
 }
 
 ChildReference decode_reference(const std::uint8_t* node, const NodeLayout& layout, int child) {
-  return load<ChildReference>(node, layout.reference_offset(child));
+  return PackedReference::unpack(load<std::uint32_t>(node, layout.reference_offset(child)));
 }
 
 }  // namespace testbench

@@ -19,29 +19,29 @@ struct Candidate {
 
 class Packer {
  public:
-  Packer(const Bvh& bvh, int nodes_per_treelet) : bvh_(bvh) {
-    packed_.nodes_per_treelet = nodes_per_treelet;
+  Packer(const Bvh& bvh, const TreeletSizes& sizes) : bvh_(bvh) {
+    packed_.sizes = sizes;
     packed_.slot_of_node.assign(bvh.nodes.size(), -1);
   }
 
   Treelets pack() {
     if (bvh_.nodes.empty()) return packed_;
-    roots_.push_back(0);
+    put(take_piece(0, packed_.sizes.resident), 0);
     while (!roots_.empty()) {
       const std::int32_t root = roots_.front();
       roots_.pop_front();
-      place(take_piece(root));
+      place(take_piece(root, packed_.sizes.per_treelet));
     }
     return packed_;
   }
 
  private:
-  /// The nodes of the treelet that begins at `root`; what does not fit begins treelets of its own.
-  std::vector<std::int32_t> take_piece(std::int32_t root) {
+  /// The nodes of the piece that begins at `root`; what does not fit begins pieces of its own.
+  std::vector<std::int32_t> take_piece(std::int32_t root, int most_nodes) {
     std::vector<std::int32_t> piece;
     std::priority_queue<Candidate> candidates;
     candidates.push({0.0, root});
-    while (!candidates.empty() && piece.size() < std::size_t(packed_.nodes_per_treelet)) {
+    while (!candidates.empty() && piece.size() < std::size_t(most_nodes)) {
       const std::int32_t node = candidates.top().node;
       candidates.pop();
       piece.push_back(node);
@@ -58,17 +58,23 @@ class Packer {
   /// Where there is room left, or into a new treelet; whichever then has more room stays open.
   void place(const std::vector<std::int32_t>& piece) {
     const int size = static_cast<int>(piece.size());
+    const int most = packed_.sizes.per_treelet;
     std::int32_t slot = open_slot_;
     if (size > open_slots_) {
-      slot = packed_.count++ * packed_.nodes_per_treelet;
-      if (packed_.nodes_per_treelet - size >= open_slots_) {
+      slot = static_cast<std::int32_t>(packed_.slots());
+      ++packed_.count;
+      if (most - size >= open_slots_) {
         open_slot_ = slot + size;
-        open_slots_ = packed_.nodes_per_treelet - size;
+        open_slots_ = most - size;
       }
     } else {
       open_slot_ += size;
       open_slots_ -= size;
     }
+    put(piece, slot);
+  }
+
+  void put(const std::vector<std::int32_t>& piece, std::int32_t slot) {
     for (const std::int32_t node : piece) packed_.slot_of_node[std::size_t(node)] = slot++;
   }
 
@@ -81,15 +87,15 @@ class Packer {
 
 }  // namespace
 
-Treelets pack_treelets(const Bvh& bvh, int nodes_per_treelet) {
-  return Packer(bvh, nodes_per_treelet).pack();
+Treelets pack_treelets(const Bvh& bvh, const TreeletSizes& sizes) {
+  return Packer(bvh, sizes).pack();
 }
 
 std::vector<std::uint8_t> encode_treelets(const Bvh& bvh, const Treelets& treelets,
                                           const path_tracer::NodeLayout& layout) {
   const auto node_bytes = std::size_t(layout.node_bytes());
-  std::vector<std::uint8_t> bytes(std::size_t(treelets.count) * std::size_t(treelets.nodes_per_treelet) *
-                                  node_bytes);
+  std::vector<std::uint8_t> bytes(std::size_t(treelets.slots()) * node_bytes);
+  if (bvh.nodes.empty()) encode_node(BvhNode{}, layout, {}, bytes.data());
   for (std::size_t node = 0; node < bvh.nodes.size(); ++node)
     encode_node(bvh.nodes[node], layout, treelets.slot_of_node,
                 bytes.data() + std::size_t(treelets.slot_of_node[node]) * node_bytes);

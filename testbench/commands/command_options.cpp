@@ -149,4 +149,26 @@ void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program
       ->capture_default_str();
 }
 
+void add_traversal_options(CLI::App& command, path_tracer::ProgramConfig& program) {
+  using path_tracer::NodeFormat;
+  using path_tracer::Traversal;
+  command.add_option("--traversal", program.traversal, "How rays find triangles: brute_force or treelets")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Traversal>{
+          {"brute_force", Traversal::brute_force}, {"treelets", Traversal::treelets}}))
+      ->default_str(traversal_name(program.traversal));
+  path_tracer::TreeShape& tree = program.tree;
+  command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, NodeFormat>{
+          {"fp64", NodeFormat::fp64}, {"fp32", NodeFormat::fp32}, {"quantised8", NodeFormat::quantised8}}))
+      ->default_str(node_format_name(tree.layout.format));
+  command.add_option("--leaf-triangles", tree.leaf_triangles, "Triangles of a leaf, at most")
+      ->capture_default_str();
+  command.add_option("--treelet-nodes", tree.treelet_nodes, "Nodes that a PE loads at a time")
+      ->capture_default_str();
+  command.add_option("--resident-nodes", tree.resident_nodes, "Nodes around the root that every PE keeps")
+      ->capture_default_str();
+  command.add_option("--stack-entries", tree.stack_entries, "Entries of a ray's short stack: 0 or a power of two")
+      ->capture_default_str();
+}
+
 }  // namespace testbench

@@ -80,4 +80,7 @@ Scene load_scene_for_film(const std::string& path, const std::string& size);
 /// are the values in `program`.
 void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program);
 
+/// How rays find triangles: --traversal and what the tree looks like. The defaults are the values in `program`.
+void add_traversal_options(CLI::App& command, path_tracer::ProgramConfig& program);
+
 }  // namespace testbench

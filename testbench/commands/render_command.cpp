@@ -180,6 +180,7 @@ void add_firmware_options(CLI::App& command, RenderCommand& state) {
   command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")
       ->capture_default_str();
   add_sampling_options(command, program);
+  add_traversal_options(command, program);
 }
 
 }  // namespace

@@ -1,0 +1,139 @@
+#pragma once
+
+#include "firmware/cn/poly_memory.hpp"
+#include "firmware/cn/poly.hpp"
+
+/// Poly memory through poly pointers: each PE reads or writes at an address of its own in its own SRAM. It
+/// costs what an access at the same address in all PEs costs; computing addresses is charged as it is written.
+namespace cn {
+
+namespace indexed_detail {
+
+inline Lanes<std::uint64_t> lane_numbers() {
+  return each_lane<std::uint64_t>([](int i) { return std::uint64_t(i); });
+}
+
+/// Where the words of the enabled PEs lie in Strip::poly_words; 0 for the others, whose addresses may be
+/// anything.
+inline Lanes<std::uint64_t> word_index(const poly<std::int32_t>& address) {
+  const auto bytes = bit_cast_lanes<std::uint64_t>(address.lanes());
+  const auto rows = each_chunk<std::uint64_t>([&](int i) { return bytes.chunk[i] >> 3; });
+  const auto in_rows = multiply_low_words(rows, broadcast(std::uint64_t(unsigned(strip.num_pes))));
+  const auto lane = lane_numbers();
+  const std::uint64_t first = unsigned(strip.first_pe);
+  const auto index =
+      each_chunk<std::uint64_t>([&](int i) { return in_rows.chunk[i] + lane.chunk[i] + first; });
+  return select_lanes(MaskLanes(strip.enabled), index, broadcast(std::uint64_t{0}));
+}
+
+inline Lanes<std::uint64_t> gather(const Lanes<std::uint64_t>& index) {
+  return each_chunk<std::uint64_t>([&](int i) {
+    using Chunk = Lanes<std::uint64_t>::Chunk;
+#if defined(__AVX512F__)
+    return Chunk(_mm512_mask_i64gather_epi64(_mm512_setzero_si512(), 0xff, __m512i(index.chunk[i]),
+                                             strip.poly_words, 8));
+#elif defined(__AVX2__)
+    return Chunk(_mm256_i64gather_epi64(reinterpret_cast<const long long*>(strip.poly_words),
+                                        __m256i(index.chunk[i]), 8));
+#else
+    return Chunk{strip.poly_words[index.chunk[i][0]], strip.poly_words[index.chunk[i][1]]};
+#endif
+  });
+}
+
+/// Bits by which a 4-byte variable stands in its 8-byte word.
+inline Lanes<std::uint64_t> shift_in_word(const poly<std::int32_t>& address) {
+  const auto bytes = bit_cast_lanes<std::uint64_t>(address.lanes());
+  return each_chunk<std::uint64_t>([&](int i) { return (bytes.chunk[i] & 4) << 3; });
+}
+
+inline void observe(Access access, const poly<std::int32_t>& address, int bytes) {
+  if constexpr (kObservedSram) {
+    if (strip.observer == nullptr) return;
+    const std::uint32_t enabled = mask_bits(strip.enabled);
+    for (int lane = 0; lane < kStripLanes; ++lane)
+      if ((enabled >> lane & 1) != 0)
+        strip.observer->touches_poly(access, {static_cast<int>(address.lanes()[lane]), bytes}, strip.first_pe,
+                                     1u << lane);
+  }
+}
+
+}  // namespace indexed_detail
+
+/// @param address in bytes, a multiple of sizeof(T) within the SRAM on every enabled PE; the others get some
+/// number
+template <class T>
+inline poly<T> load_at(const poly<std::int32_t>& address) {
+  static_assert(sizeof(T) == 8 || std::is_integral_v<T>);
+  issue(InstructionClass::sram, sizeof(T) / 4);
+  indexed_detail::observe(Access::read, address, sizeof(T));
+  const Lanes<std::uint64_t> words = indexed_detail::gather(indexed_detail::word_index(address));
+  using Lane = typename poly<T>::Lane;
+  if constexpr (sizeof(T) == 8) {
+    return poly<T>(bit_cast_lanes<Lane>(words));
+  } else {
+    const auto shift = indexed_detail::shift_in_word(address);
+    const auto low = each_chunk<std::uint64_t>([&](int i) { return words.chunk[i] >> shift.chunk[i]; });
+    return poly<T>(wrap_lanes<T>(bit_cast_lanes<Lane>(low)));
+  }
+}
+
+/// Reaches enabled PEs only; see load_at.
+inline void store_at(const poly<std::int32_t>& address, const poly<std::uint64_t>& value) {
+  issue(InstructionClass::sram, 2);
+  indexed_detail::observe(Access::write, address, 8);
+  const Lanes<std::uint64_t> index = indexed_detail::word_index(address);
+  for (std::uint32_t lanes = mask_bits(strip.enabled); lanes != 0; lanes &= lanes - 1) {
+    const int lane = __builtin_ctz(lanes);
+    strip.poly_words[index[lane]] = value.lanes()[lane];
+  }
+}
+
+/// Shifts by an amount of each PE's own, 0 to 63. The ALU shifts by one fixed amount a pass, so that is a
+/// conditional pass for each bit of the amount.
+inline void issue_variable_shift() {
+  issue(InstructionClass::int64_alu, 6);
+  issue(InstructionClass::move, 6);
+}
+inline poly<std::uint64_t> shift_left(const poly<std::uint64_t>& a, const poly<std::int32_t>& bits) {
+  issue_variable_shift();
+  const auto amount = bit_cast_lanes<std::uint64_t>(bits.lanes());
+  return poly<std::uint64_t>(
+      each_chunk<std::uint64_t>([&](int i) { return a.lanes().chunk[i] << (amount.chunk[i] & 63); }));
+}
+inline poly<std::uint64_t> shift_right(const poly<std::uint64_t>& a, const poly<std::int32_t>& bits) {
+  issue_variable_shift();
+  const auto amount = bit_cast_lanes<std::uint64_t>(bits.lanes());
+  return poly<std::uint64_t>(
+      each_chunk<std::uint64_t>([&](int i) { return a.lanes().chunk[i] >> (amount.chunk[i] & 63); }));
+}
+
+/// The number of the highest bit that is set in a positive number: its exponent as a double.
+inline poly<std::int32_t> highest_bit(const poly<std::uint32_t>& a) {
+  const poly<std::uint64_t> bits = reinterpret<std::uint64_t>(convert<double>(a));
+  issue(InstructionClass::int32_alu, 2);  // of the upper word
+  return poly<std::int32_t>(bit_cast_lanes<std::int64_t>(
+      each_chunk<std::uint64_t>([&](int i) { return (bits.lanes().chunk[i] >> 52) - 1023; })));
+}
+
+/// A float by its bits, as a double.
+inline poly<double> widen_float(const poly<std::uint32_t>& bits) {
+  issue(InstructionClass::convert);
+  return poly<double>(each_chunk<double>([&](int i) {
+    using Chunk = Lanes<double>::Chunk;
+    const auto& words = bits.lanes().chunk[i];
+#if defined(__AVX512F__)
+    // Masked forms: GCC 12 warns of uninitialised values in the headers' plain ones.
+    const __m256i low = _mm512_maskz_cvtepi64_epi32(0xff, __m512i(words));
+    return Chunk(_mm512_maskz_cvtps_pd(0xff, _mm256_castsi256_ps(low)));
+#elif defined(__AVX2__)
+    const __m256i even =
+        _mm256_permutevar8x32_epi32(__m256i(words), _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6));
+    return Chunk(_mm256_cvtps_pd(_mm_castsi128_ps(_mm256_castsi256_si128(even))));
+#else
+    return Chunk(_mm_cvtps_pd(_mm_castsi128_ps(_mm_shuffle_epi32(__m128i(words), 0x08))));
+#endif
+  }));
+}
+
+}  // namespace cn

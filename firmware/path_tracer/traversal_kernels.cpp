@@ -1,0 +1,219 @@
+// Built once for each x86-64 level; TRAVERSAL_KERNELS is the level's name for the table.
+
+#include "firmware/path_tracer/traversal_kernels.hpp"
+
+#include "firmware/path_tracer/places.hpp"
+#include "firmware/path_tracer/traversal.hpp"
+#include "firmware/path_tracer/triangle.hpp"
+
+namespace path_tracer {
+namespace {
+
+RayOperands ray_of(const PolyPointer<TraversalRecord>& record) {
+  return {record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction),
+          record.get(&TraversalRecord::left_face)};
+}
+
+/// A search that keeps the face of what it finds, too.
+struct NearestFace : Nearest {
+  poly<std::int32_t> face = kNoFace;
+
+  template <class Triangle>
+  void take(const Crossing& crossing, const Triangle& triangle) {
+    Nearest::take(crossing, triangle);
+    face = triangle.face;
+  }
+};
+
+/// A leaf that each PE has its own of.
+struct PolyTriangles {
+  PolyPointer<TriangleRecord> first;
+  int count;
+  const poly<std::int32_t>& there;
+
+  PolyTriangle operator()(int i) const {
+    const PolyPointer<TriangleRecord> at = first[i];
+    return {at.get(&TriangleRecord::vertex), at.get(&TriangleRecord::edge1), at.get(&TriangleRecord::edge2),
+            at.get(&TriangleRecord::back),   at.get(&TriangleRecord::face),  at.get(&TriangleRecord::number)};
+  }
+  mask where_there(int i, const mask& lanes) const { return lanes & (there > i); }
+};
+
+void write_new_ray(const BeginArguments& arguments, const RayOperands& ray) {
+  const PolyPointer<TraversalRecord>& record = arguments.record;
+  record.set(&TraversalRecord::origin, ray.origin);
+  record.set(&TraversalRecord::direction, ray.direction);
+  record.set(&TraversalRecord::left_face, ray.left_face);
+  record.set(&TraversalRecord::light_face, arguments.ray.get(&RayRecord::light_face));
+  record.set(&TraversalRecord::slot, cn::pe_num() + arguments.first_slot);
+  const Nearest nothing;
+  record.set(&TraversalRecord::distance, nothing.distance);
+  record.set(&TraversalRecord::determinant, nothing.determinant);
+  record.set(&TraversalRecord::number, nothing.number);
+  const poly<std::int32_t> zero = 0;
+  record.set(&TraversalRecord::node, zero);
+  record.set(&TraversalRecord::level, zero);
+  record.set(&TraversalRecord::leaf, zero);
+  record.set(&TraversalRecord::leaf_count, zero);
+  record.set(&TraversalRecord::trail, poly<std::uint64_t>(0u));
+  record.set(&TraversalRecord::more, poly<std::uint32_t>(0u));
+  record.set(&TraversalRecord::stack, zero);
+}
+
+/// The copies of a light's triangles, by its place among the lights.
+poly<std::int32_t> light_run(const BeginArguments& arguments) {
+  const poly<std::uint64_t> offset = arguments.light_place.read() - arguments.lights;
+  const poly<double> index = cn::convert<double>(cn::low_word(offset)) * (1.0 / sizeof(LightRecord)) + 0.5;
+  return cn::convert<std::int32_t>(index) * kLightRun + arguments.first_light_run;
+}
+
+template <NodeFormat format>
+void begin(const BeginArguments& arguments) {
+  const RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
+                        arguments.ray.get(&RayRecord::left_face)};
+  write_new_ray(arguments, ray);
+  Way way(arguments.record);
+  cn::poly_if_any(arguments.ray.get(&RayRecord::light_face) != poly<std::int32_t>(kNoFace), [&] {
+    way.leaf = light_run(arguments);
+    way.leaf_count = kLightRun;
+  });
+  const BoxRay box_ray(ray.origin, ray.direction);
+  Traveller<format>(arguments.tree, arguments.record, box_ray, kNoTreelet,
+                    std::numeric_limits<double>::infinity(), way)
+      .travel();
+  way.write(arguments.record);
+  cn::keep(!way.is_over(), *arguments.alive);
+}
+
+/// The node that a ray is likely to ask for next: on the stack it may be culled yet.
+poly<std::int32_t> next_node(const LocateArguments& arguments, const poly<std::int32_t>& node) {
+  const PolyPointer<TraversalRecord>& record = arguments.record;
+  poly<std::int32_t> next(node.lanes());
+  cn::poly_if(node == kNextOnStack, [&] {
+    next = cn::select(record.get(&TraversalRecord::more) == poly<std::uint32_t>(0u),
+                      poly<std::int32_t>(kTraversalOver), poly<std::int32_t>(0));
+    const int entries = arguments.shape.stack_entries;
+    if (entries == 0) return;
+    const poly<std::int32_t> stack = record.get(&TraversalRecord::stack);
+    cn::poly_if((stack >> 16) > 0, [&] {
+      const poly<std::int32_t> place = (stack - 1) & poly<std::int32_t>(entries - 1);
+      const poly<std::uint32_t> reference = cn::low_word(cn::load_at<std::uint64_t>(
+          (place << 3) + (record.span().offset_bytes + int{sizeof(TraversalRecord)})));
+      constexpr std::uint32_t kCount = PackedReference::kCountMask << PackedReference::kFirstBits;
+      const mask is_node = (reference & poly<std::uint32_t>(kCount)) == poly<std::uint32_t>(0u);
+      next = cn::select(is_node,
+                        cn::reinterpret_word<std::int32_t>(
+                            reference & poly<std::uint32_t>(PackedReference::kFirstMask)),
+                        poly<std::int32_t>(kTraversalOver));
+    });
+  });
+  return next;
+}
+
+void locate(const LocateArguments& arguments) {
+  const PolyPointer<TraversalRecord>& record = arguments.record;
+  const TreeShape& shape = arguments.shape;
+  const mask has_leaf = record.get(&TraversalRecord::leaf_count) > 0;
+  arguments.leaf_place.write(
+      place_of(arguments.triangles, record.get(&TraversalRecord::leaf), sizeof(TriangleRecord)));
+
+  const poly<std::int32_t> next = next_node(arguments, record.get(&TraversalRecord::node));
+  const mask elsewhere = next >= poly<std::int32_t>(shape.resident_nodes);
+  const poly<double> beyond = cn::convert<double>(next - shape.resident_nodes) + 0.5;
+  const poly<std::int32_t> treelet = cn::convert<std::int32_t>(beyond * (1.0 / shape.treelet_nodes));
+  const poly<std::int32_t> first = treelet * shape.treelet_nodes + shape.resident_nodes;
+  arguments.treelet.write(cn::select(elsewhere, first, poly<std::int32_t>(kNoTreelet)));
+  arguments.treelet_place.write(
+      place_of(arguments.nodes, first, static_cast<std::size_t>(shape.layout.node_bytes())));
+  cn::keep(has_leaf, *arguments.needs_leaf);
+  cn::keep(elsewhere, *arguments.needs_treelet);
+}
+
+/// Tests the leaf. A shadow ray is over when something is nearer than its light; one that missed its light
+/// finds out what else it hits, as the light's face may have other triangles.
+void test_leaf(const TraverseArguments& arguments, const RayOperands& ray, NearestFace& nearest, Way& way) {
+  const poly<std::int32_t> light_face = arguments.record.get(&TraversalRecord::light_face);
+  nearest.face.become(light_face);
+  search(ray, arguments.reach,
+         PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), way.leaf_count}, nearest);
+  cn::poly_if(way.leaf_count > 0, [&] {
+    const mask nothing = nearest.number < 0;
+    arguments.record.set(&TraversalRecord::light_face,
+                         cn::select(nothing, poly<std::int32_t>(kNoFace), light_face));
+    const mask occluded = (light_face != poly<std::int32_t>(kNoFace)) & (nearest.face != light_face);
+    way.node = cn::select(occluded & !nothing, poly<std::int32_t>(kTraversalOver), way.node);
+    way.leaf_count = 0;
+  });
+  arguments.record.set(&TraversalRecord::distance, nearest.distance);
+  arguments.record.set(&TraversalRecord::determinant, nearest.determinant);
+  arguments.record.set(&TraversalRecord::number, nearest.number);
+}
+
+template <NodeFormat format>
+void traverse(const TraverseArguments& arguments) {
+  const RayOperands ray = ray_of(arguments.record);
+  NearestFace nearest;
+  nearest.distance.become(arguments.record.get(&TraversalRecord::distance));
+  nearest.determinant.become(arguments.record.get(&TraversalRecord::determinant));
+  nearest.number.become(arguments.record.get(&TraversalRecord::number));
+  Way way(arguments.record);
+  if (arguments.tests_leaves) test_leaf(arguments, ray, nearest, way);
+  const poly<double> limit = latest_entry(nearest.distance / cn::abs(nearest.determinant));
+  const BoxRay box_ray(ray.origin, ray.direction);
+  Traveller<format>(arguments.tree, arguments.record, box_ray, arguments.treelet.read(), limit, way).travel();
+  way.write(arguments.record);
+  cn::keep(!way.is_over(), *arguments.alive);
+}
+
+void finish(const FinishArguments& arguments) {
+  const PolyPointer<TraversalRecord>& record = arguments.record;
+  Nearest nearest;
+  nearest.distance.become(record.get(&TraversalRecord::distance));
+  nearest.determinant.become(record.get(&TraversalRecord::determinant));
+  nearest.number.become(record.get(&TraversalRecord::number));
+  write_hit(nearest, record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction),
+            arguments.hit);
+  const poly<MonoAddress> place = place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord));
+  arguments.surface_place.write(cn::select(nearest.number >= 0, place, poly<MonoAddress>(0u)));
+  const poly<std::int32_t> slot = record.get(&TraversalRecord::slot);
+  arguments.hit_to.write(place_of(arguments.hits, slot, sizeof(HitRecord)));
+  arguments.surface_place_to.write(place_of(arguments.surface_places, slot, sizeof(MonoAddress)));
+}
+
+void append_rays(const AppendRaysArguments& arguments) {
+  const poly<std::int32_t> behind = arguments.number.read() + arguments.tail;
+  const mask wraps = behind >= poly<std::int32_t>(arguments.capacity);
+  arguments.place.write(place_of(arguments.bin, cn::select(wraps, behind - arguments.capacity, behind),
+                                 static_cast<std::size_t>(arguments.record_bytes)));
+}
+
+void recall(const RecallArguments& arguments) {
+  cn::keep(arguments.surface_place.read() != poly<MonoAddress>(0u), *arguments.hit_something);
+}
+
+template <NodeFormat format>
+constexpr cn::Kernel<BeginArguments> begin_kernel() {
+  return cn::kernel<BeginArguments, begin<format>>("begin");
+}
+template <NodeFormat format>
+constexpr cn::Kernel<TraverseArguments> traverse_kernel() {
+  return cn::kernel<TraverseArguments, traverse<format>>("traverse");
+}
+
+}  // namespace
+
+const TraversalKernels& TRAVERSAL_KERNELS() {
+  static constexpr TraversalKernels table{
+      {begin_kernel<NodeFormat::fp64>(), begin_kernel<NodeFormat::fp32>(),
+       begin_kernel<NodeFormat::quantised8>()},
+      cn::kernel<LocateArguments, locate>("locate"),
+      {traverse_kernel<NodeFormat::fp64>(), traverse_kernel<NodeFormat::fp32>(),
+       traverse_kernel<NodeFormat::quantised8>()},
+      cn::kernel<FinishArguments, finish>("finish"),
+      cn::kernel<AppendRaysArguments, append_rays>("append_rays"),
+      cn::kernel<RecallArguments, recall>("recall"),
+  };
+  return table;
+}
+
+}  // namespace path_tracer

@@ -9,9 +9,9 @@ int IntersectionStage::load_bytes(Program program) {
   return program == Program::segments ? bytes : bytes + int{sizeof(LightRecord)};
 }
 
-int IntersectionStage::save_bytes(Program program) {
+int IntersectionStage::save_bytes(const ProgramConfig& config) {
   const int bytes = sizeof(ScatterRecord);
-  return program == Program::segments ? bytes : bytes + int{sizeof(RayRecord) + sizeof(LightingRecord)};
+  return config.casts_shadow_rays() ? bytes + int{sizeof(LightingRecord)} + ray_bytes(config) : bytes;
 }
 
 IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
@@ -31,8 +31,8 @@ IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   BufferCutter same_place(cutter);
   Saves saves;
   saves.scatter = cutter.take<ScatterRecord>();
-  saves.shadow_ray = cutter.take<RayRecord>();
   saves.lighting = cutter.take<LightingRecord>();
+  saves.shadow_ray = take_ray(cutter);
   saves.direct_light = same_place.take<DirectLightRecord>();
   return saves;
 }
@@ -75,7 +75,7 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   arguments.casts_shadow_rays = context_.config.casts_shadow_rays();
   arguments.cull_shadow_rays = context_.config.cull_shadow_rays;
   arguments.scatter = to.scatter;
-  arguments.shadow_ray = to.shadow_ray;
+  arguments.shadow_ray = PolyPointer<RayRecord>(to.shadow_ray.span().offset_bytes);
   arguments.lighting = to.lighting;
   arguments.casts = &bin.casts;
   context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
@@ -95,7 +95,7 @@ void IntersectionStage::save(std::uint64_t step, int block) {
   const Bins::Block& bin = bin_block(block);
   save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.segments());
   if (!context_.config.casts_shadow_rays()) return;
-  save_block(step, block, context_.layout.ray_bin, from.shadow_ray, bin.casts);
+  save_rays(step, block, from.shadow_ray, bin.casts);
   save_block(step, block, context_.layout.lighting_bin, from.lighting, bin.casts);
   save_block(step, block, context_.layout.direct_light_bin, from.direct_light, bin.shadow);
 }

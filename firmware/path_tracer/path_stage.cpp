@@ -26,8 +26,8 @@ PathStage::Loads PathStage::loads(std::uint64_t step) const {
 
 PathStage::Saves PathStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  return {cutter.take<VertexRecord>(),   cutter.take<PathRecord>(), cutter.take<RayRecord>(),
-          cutter.take<FinishedRecord>(), cutter.take_place(),       cutter.take_place()};
+  return {cutter.take<VertexRecord>(), cutter.take<PathRecord>(), cutter.take<FinishedRecord>(),
+          cutter.take_place(),         cutter.take_place(),       take_ray(cutter)};
 }
 
 void PathStage::load(std::uint64_t step, int block) {
@@ -131,7 +131,7 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   arguments.next_sample = camera_rays_.next_sample();
   arguments.remaining = started;
   arguments.next_path = to.path;
-  arguments.ray = to.ray;
+  arguments.ray = PolyPointer<RayRecord>(to.ray.span().offset_bytes);
   arguments.live = &replaced_;
   context_.machine.run(context_.kernels.replace, arguments, appended_);
   camera_rays_.issue(std::uint64_t(started));
@@ -157,7 +157,7 @@ void PathStage::save(std::uint64_t step, int block) {
                             from.finished.span(), finished_);
   }
   save_block(step, block, context_.layout.path_bin, from.path, replaced_);
-  save_block(step, block, context_.layout.ray_bin, from.ray, replaced_);
+  save_rays(step, block, from.ray, replaced_);
 }
 
 }  // namespace path_tracer

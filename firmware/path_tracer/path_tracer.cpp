@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "firmware/path_tracer/refill.hpp"
+#include "firmware/path_tracer/temporary_bin.hpp"
+
 namespace path_tracer {
 namespace {
 
@@ -11,12 +14,12 @@ constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config) {
   return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config.program), PathStage::kLoadBytes,
-                   config.uses_tree() ? TraverseStage::load_bytes(config.tree) : 0});
+                   config.uses_tree() ? TreeStage::load_bytes(config.tree) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  return std::max({RayStage::kSaveBytes, IntersectionStage::save_bytes(config.program), PathStage::kSaveBytes,
-                   config.uses_tree() ? TraversalStage::kSaveBytes : 0});
+  return std::max({RayStage::kSaveBytes, IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
+                   config.uses_tree() ? TreeStage::kSaveBytes : 0});
 }
 
 const ProgramConfig& valid(const ProgramConfig& config) {
@@ -55,6 +58,24 @@ int radiance_buffers(const ProgramConfig& config) {
   return config.program == Program::full && config.buffers_loads() ? 2 : 1;
 }
 
+std::optional<RayQueue> make_queue(cn::Machine& machine, const Kernels& kernels, const Layout& layout,
+                                   const ProgramConfig& config) {
+  if (!config.uses_tree()) return {};
+  return RayQueue(machine, kernels, layout);
+}
+
+std::optional<TreeContext> make_tree_context(cn::Machine& machine, const Layout& layout,
+                                             const ProgramConfig& config) {
+  if (!config.uses_tree()) return {};
+  return TreeContext(machine, config, layout);
+}
+
+std::unique_ptr<TreeTraversal> make_tree(const StageContext& context, TreeContext& tree) {
+  if (context.config.traversal == Traversal::temporary_bin)
+    return std::make_unique<TemporaryBinTraversal>(context, tree);
+  return std::make_unique<RefillTraversal>(context, tree);
+}
+
 }  // namespace
 
 PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
@@ -72,15 +93,15 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
                       {radiance_buffers(config), RadianceStage::kLoadBytes, !config.buffers_loads()}),
       radiance_saves_(machine, "radiance save buffer",
                       {1, RadianceStage::kSaveBytes, !config.buffers_saves()}),
+      queue_(make_queue(machine, kernels, layout, config)),
+      tree_context_(make_tree_context(machine, layout, config)),
+      tree_(config.uses_tree() ? make_tree(context(loads_, saves_), *tree_context_) : nullptr),
       ray_stage_(context(loads_, saves_)),
       intersection_stage_(context(loads_, saves_)),
       path_stage_(context(loads_, saves_), work),
-      radiance_stage_(context(radiance_loads_, radiance_saves_)) {
-  if (config.uses_tree()) tree_.emplace(context(loads_, saves_));
-}
+      radiance_stage_(context(radiance_loads_, radiance_saves_)) {}
 
 void PathTracer::run(const Progress& progress) {
-  if (tree_) tree_->load_resident_nodes();
   fill_bins();
   while (true) {
     issue_loads();
@@ -108,13 +129,13 @@ void PathTracer::fill_bins() {
     path_stage_.save(step, block);
     report_fill(block);
     live_blocks_.push_back(block);
-    plan(ray_stage(), block);
+    if (!tree_) plan(ray_stage_, block);
   }
   plan_pass();
 }
 
 /// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before. With a
-/// tree, how many steps follow shows while they run.
+/// tree, how many steps that bin takes shows while they run.
 void PathTracer::plan_pass() {
   count_rays();
   path_steps_left_ = static_cast<int>(live_blocks_.size());
@@ -122,47 +143,51 @@ void PathTracer::plan_pass() {
   if (!live_blocks_.empty()) counts_.skipped_blocks += std::size_t(config_.bin_blocks) - live_blocks_.size();
   pass_blocks_.swap(live_blocks_);
   live_blocks_.clear();
-  if (tree_) {
-    traversal_steps_left_ = path_steps_left_;
-    tree_->begin_pass();
-  } else {
+  if (!tree_) {
     plan_after_rays();
+  } else if (!pass_blocks_.empty()) {
+    tree_->begin_pass(tree_plan());
   }
 }
 
+TreeTraversal::Plan PathTracer::tree_plan() {
+  return [this](Stage& stage, int block) {
+    plan(stage, block);
+    ++tree_steps_left_;
+  };
+}
+
+void PathTracer::after_tree_step(const Step& step) {
+  tree_->after_step(*step.stage, step.block, tree_plan());
+  if (--tree_steps_left_ > 0) return;
+  queue_->clear();
+  for (const int block : pass_blocks_) plan(tree_->recall(), block);
+  plan_after_rays();
+}
+
 void PathTracer::plan_after_rays() {
-  if (tree_)
-    for (const int block : pass_blocks_) plan(tree_->recall(), block);
   for (const int block : pass_blocks_) plan(intersection_stage_, block);
   for (const int block : pass_blocks_) plan(path_stage_, block);
 }
 
-void PathTracer::after_traversal_step() {
-  const auto plan_block = [&](std::optional<int> block) {
-    if (!block) return false;
-    plan(tree_->traverse(), *block);
-    ++traversal_steps_left_;
-    return true;
-  };
-  --traversal_steps_left_;
-  while (plan_block(tree_->bin().take_full())) {
-  }
-  if (traversal_steps_left_ == 0 && !plan_block(tree_->bin().take_rest())) plan_after_rays();
-}
-
 void PathTracer::count_rays() {
   std::uint64_t rays = 0;
-  for (const int block : live_blocks_) rays += std::uint64_t(bins_.blocks[std::size_t(block)].live.count());
+  for (const int index : live_blocks_) {
+    const Bins::Block& block = bins_.blocks[std::size_t(index)];
+    rays += std::uint64_t(block.live.count());
+    counts_.segments += std::uint64_t(block.segments().count());
+    counts_.shadow_rays += std::uint64_t(block.shadow.count());
+  }
   if (rays > 0) counts_.rays.add(rays);
 }
 
 /// A step's records come from earlier steps on the same block of the bins. Few live blocks bring the two so
 /// close that the earlier one has not run yet.
 bool PathTracer::can_load(const Step& step) const {
-  return !step.stage->works_on_slots() ||
-         std::none_of(loading_.begin(), loading_.end(), [&](const Step& earlier) {
-           return earlier.block == step.block && earlier.stage->works_on_slots();
-         });
+  return std::none_of(loading_.begin(), loading_.end(), [&](const Step& earlier) {
+    if (earlier.block != step.block) return false;
+    return step.stage->works_on_slots() ? earlier.stage->works_on_slots() : earlier.stage == step.stage;
+  });
 }
 
 /// How many steps may be loaded at a time, the one to be processed included. What is prepared is loaded so much
@@ -215,7 +240,7 @@ void PathTracer::run_bin_step() {
   step.stage->process(step.number, step.block);
   step.stage->save(step.number, step.block);
   if (step.stage == &path_stage_) after_path_step(step);
-  if (tree_ && is_ray_step(step)) after_traversal_step();
+  if (tree_ && is_ray_step(step)) after_tree_step(step);
 }
 
 void PathTracer::after_path_step(const Step& step) {
@@ -224,7 +249,7 @@ void PathTracer::after_path_step(const Step& step) {
   report_fill(step.block);
   if (bins_.blocks[std::size_t(step.block)].live.any()) {
     live_blocks_.push_back(step.block);
-    plan(ray_stage(), step.block);
+    if (!tree_) plan(ray_stage_, step.block);
   }
   if (--path_steps_left_ > 0) return;
   plan_radiance_of_pass();

@@ -2,10 +2,11 @@
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "firmware/path_tracer/stages.hpp"
-#include "firmware/path_tracer/traversal_stages.hpp"
+#include "firmware/path_tracer/tree_stage.hpp"
 
 namespace path_tracer {
 
@@ -51,13 +52,8 @@ class PathTracer {
 
   void plan(Stage& stage, int block) { bin_steps_.push_back({&stage, block}); }
   void plan_radiance(Stage& stage, int block) { radiance_steps_.push_back({&stage, block}); }
-  /// The stage that takes rays out of the ray bin.
-  Stage& ray_stage() {
-    if (tree_) return tree_->begin();
-    return ray_stage_;
-  }
-  bool is_ray_step(const Step& step) {
-    return step.stage == &ray_stage() || (tree_ && step.stage == &tree_->traverse());
+  bool is_ray_step(const Step& step) const {
+    return step.stage == &ray_stage_ || (tree_ && tree_->has(*step.stage));
   }
   std::size_t look_ahead(const Step& step) const;
   bool can_load(const Step& step) const;
@@ -75,8 +71,9 @@ class PathTracer {
   void run_ray_step_with_radiance();
   void after_path_step(const Step& step);
   void plan_pass();
+  TreeTraversal::Plan tree_plan();
   void plan_after_rays();
-  void after_traversal_step();
+  void after_tree_step(const Step& step);
   void count_rays();
   void plan_radiance_of_pass();
   void plan_list_step();
@@ -87,7 +84,7 @@ class PathTracer {
   void after_list_step(int block);
   void announce_results();
   StageContext context(TransferRing& loads, TransferRing& saves) {
-    return {machine_, kernels_, config_, layout_, loads, saves, bins_, counts_};
+    return {machine_, kernels_, config_, layout_, loads, saves, bins_, counts_, queue_ ? &*queue_ : nullptr};
   }
 
   cn::Machine& machine_;
@@ -100,8 +97,10 @@ class PathTracer {
   TransferRing saves_;
   TransferRing radiance_loads_;
   TransferRing radiance_saves_;
+  std::optional<RayQueue> queue_;  ///< these three with a tree only
+  std::optional<TreeContext> tree_context_;
+  std::unique_ptr<TreeTraversal> tree_;
   RayStage ray_stage_;
-  std::optional<TreeTraversal> tree_;
   IntersectionStage intersection_stage_;
   PathStage path_stage_;
   RadianceStage radiance_stage_;
@@ -111,7 +110,7 @@ class PathTracer {
   std::uint64_t next_step_ = 0;
   std::vector<int> live_blocks_;      ///< of the pass that is being planned
   std::vector<int> pass_blocks_;      ///< of the pass that runs
-  int traversal_steps_left_ = 0;      ///< that are planned
+  int tree_steps_left_ = 0;           ///< that are planned
   int path_steps_left_ = 0;           ///< of the pass that runs
   std::uint64_t last_path_step_ = 0;  ///< which saves the list of finished paths
 

@@ -97,8 +97,12 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
     layout.nodes = memory.take<std::uint64_t>(
         "nodes", std::uint64_t(scene.tree_slots) * std::uint64_t(tree.layout.node_bytes()) / 8);
   layout.scene_bytes = memory.used_bytes();
-  layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
-  if (config.uses_tree())
+  if (config.uses_tree()) {
+    layout.ray_queue = memory.take<QueuedRay>("ray bin", slots);
+  } else {
+    layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
+  }
+  if (config.traversal == Traversal::temporary_bin)
     layout.traversal_bin = memory.take<std::uint64_t>(
         "traversal bin", std::uint64_t(num_pes) * std::uint64_t(traversal_bin_blocks(config)) *
                              std::uint64_t(tree.record_bytes()) / 8);

@@ -33,7 +33,10 @@ enum class LightSampling : std::uint8_t {
 /// How a ray finds the triangles that it may hit.
 enum class Traversal : std::uint8_t {
   brute_force,  ///< it is tested against every one
-  treelets,     ///< a tree, of which each PE loads the piece that its ray asks for; rays wait in a temporary bin
+  // A tree, of which each PE loads the piece that its ray asks for:
+  temporary_bin,  ///< rays wait in a bin between two pieces (paper, section 5)
+  refill,         ///< rays stay in their PE; idle PEs load new ones
+  lock_step,      ///< the same without: new rays are loaded when all PEs are idle
 };
 
 inline constexpr int kMaxBuffers = 8;
@@ -108,6 +111,7 @@ struct Layout {
 
   // Bins, one record a slot (vertices: slot_vertices a slot).
   cn::MonoPointer<RayRecord> ray_bin;
+  cn::MonoPointer<QueuedRay> ray_queue;  ///< the ray bin with a tree
   cn::MonoPointer<std::uint64_t> traversal_bin;
   cn::MonoPointer<HitRecord> intersection_bin;
   cn::MonoPointer<cn::MonoAddress> surface_place_bin;  ///< with a tree, or PEs keep them
@@ -162,8 +166,8 @@ class PassCounts {
 struct TraversalCounts {
   std::uint64_t leaf_loads = 0;     ///< rays that loaded a leaf
   std::uint64_t treelet_loads = 0;  ///< rays that loaded a treelet
-  std::vector<std::uint64_t> rays;   ///< by pass, from the one that takes rays out of the ray bin
-  std::vector<std::uint64_t> lanes;  ///< by pass: PEs of the blocks that they filled
+  std::vector<std::uint64_t> rays;   ///< by pass or turn, from the one that takes rays out of the ray bin
+  std::vector<std::uint64_t> lanes;  ///< by pass: PEs of the blocks that they filled; with refill all as pass 0
   /// Until 95 % of the rays of a bin were through:
   std::uint64_t rays_before_tail = 0;
   std::uint64_t lanes_before_tail = 0;

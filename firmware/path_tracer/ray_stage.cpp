@@ -22,8 +22,6 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.surface_place = bin.surface_place;
   arguments.hit_something = &bin.hit_something;
   context_.machine.run(context_.kernels.intersect, arguments, bin.live);
-  context_.counts.segments += std::uint64_t(bin.segments().count());
-  context_.counts.shadow_rays += std::uint64_t(bin.shadow.count());
 }
 
 void RayStage::save(std::uint64_t step, int block) {

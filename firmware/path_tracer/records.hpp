@@ -68,6 +68,13 @@ struct RayRecord {
   std::int32_t light_face = kNoFace;  ///< of a shadow ray: the face that it looks for
 };
 
+/// Ray bin of programs that use a tree: rays stand there packed, whatever slot they belong to.
+struct QueuedRay {
+  RayRecord ray{};
+  std::int32_t slot = 0;
+  std::int32_t light = 0;  ///< of a shadow ray: the number of the light that it was sent to
+};
+
 /// Intersection bin.
 struct HitRecord {
   vec3<double> position{};

@@ -25,6 +25,8 @@ struct Bins {
   std::vector<Block> blocks;
 };
 
+class RayQueue;
+
 /// What every stage works with.
 struct StageContext {
   cn::Machine& machine;
@@ -35,6 +37,7 @@ struct StageContext {
   TransferRing& saves;
   Bins& bins;
   RunCounts& counts;
+  RayQueue* queue;  ///< nothing without a tree
 };
 
 /// Cuts records off a ring buffer, in order.
@@ -98,6 +101,12 @@ class Stage {
                   const LaneMask& enabled) {
     context_.saves.copy_p2m(step, block, block_of(bin, block), from.span(), enabled);
   }
+
+  /// A ray at the end of a save buffer, with room for what save_rays() adds.
+  PolyPointer<QueuedRay> take_ray(BufferCutter& cutter) const;
+  static int ray_bytes(const ProgramConfig& config);
+  /// Into the ray bin; into the lanes' slots, or packed with a tree.
+  void save_rays(std::uint64_t step, int block, PolyPointer<QueuedRay> from, const LaneMask& with_ray);
 
   Bins::Block& bin_block(int block) const { return context_.bins.blocks[std::size_t(block)]; }
 

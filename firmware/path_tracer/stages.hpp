@@ -27,7 +27,7 @@ class IntersectionStage : public Stage {
  public:
   using Stage::Stage;
   static int load_bytes(Program program);
-  static int save_bytes(Program program);
+  static int save_bytes(const ProgramConfig& config);
 
   const char* bin() const override { return "intersection bin"; }
   void load(std::uint64_t step, int block) override;
@@ -44,8 +44,8 @@ class IntersectionStage : public Stage {
   };
   struct Saves {
     PolyPointer<ScatterRecord> scatter;  // segments
-    PolyPointer<RayRecord> shadow_ray;
     PolyPointer<LightingRecord> lighting;
+    PolyPointer<QueuedRay> shadow_ray;
     PolyPointer<DirectLightRecord> direct_light;  // shadow rays
   };
   Loads loads(std::uint64_t step) const;
@@ -81,8 +81,10 @@ class PathStage : public Stage {
  public:
   PathStage(const StageContext& context, const Work& work);
   static constexpr int kLoadBytes = sizeof(PathRecord) + sizeof(ScatterRecord) + sizeof(DirectLightRecord);
-  static constexpr int kSaveBytes = sizeof(VertexRecord) + sizeof(PathRecord) + sizeof(RayRecord) +
-                                    sizeof(FinishedRecord) + 2 * sizeof(MonoAddress);
+  static int save_bytes(const ProgramConfig& config) {
+    return sizeof(VertexRecord) + sizeof(PathRecord) + sizeof(FinishedRecord) + 2 * sizeof(MonoAddress) +
+           ray_bytes(config);
+  }
 
   const char* bin() const override { return "path bin"; }
   void load(std::uint64_t step, int block) override;
@@ -107,10 +109,10 @@ class PathStage : public Stage {
   struct Saves {
     PolyPointer<VertexRecord> vertex;
     PolyPointer<PathRecord> path;
-    PolyPointer<RayRecord> ray;
     PolyPointer<FinishedRecord> finished;
     PolyField<MonoAddress> vertex_place;
     PolyField<MonoAddress> finished_place;
+    PolyPointer<QueuedRay> ray;
   };
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;

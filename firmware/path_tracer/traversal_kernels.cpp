@@ -39,13 +39,38 @@ struct PolyTriangles {
   mask where_there(int i, const mask& lanes) const { return lanes & (there > i); }
 };
 
-void write_new_ray(const BeginArguments& arguments, const RayOperands& ray) {
+/// A light's number, by its place among the lights.
+poly<std::int32_t> light_number(const poly<MonoAddress>& place, MonoAddress lights) {
+  const poly<double> offset = cn::convert<double>(cn::low_word(place - lights));
+  return cn::convert<std::int32_t>(offset * (1.0 / sizeof(LightRecord)) + 0.5);
+}
+
+void enqueue(const EnqueueArguments& arguments) {
+  arguments.ray.set(&QueuedRay::slot, cn::pe_num() + arguments.first_slot);
+  arguments.ray.set(&QueuedRay::light, light_number(arguments.light_place.read(), arguments.lights));
+  arguments.place.write(place_of(arguments.first_place, arguments.number.read(), sizeof(QueuedRay)));
+}
+
+void take_rays(const TakeRaysArguments& arguments) {
+  const poly<std::int32_t> number = arguments.number.read();
+  arguments.place.write(place_of(arguments.first_place, number, sizeof(QueuedRay)));
+  cn::keep(number < poly<std::int32_t>(arguments.rays), *arguments.takes);
+}
+
+void enter(const EnterArguments& arguments) {
+  const PolyPointer<RayRecord> ray(arguments.ray.span().offset_bytes);
   const PolyPointer<TraversalRecord>& record = arguments.record;
-  record.set(&TraversalRecord::origin, ray.origin);
-  record.set(&TraversalRecord::direction, ray.direction);
-  record.set(&TraversalRecord::left_face, ray.left_face);
-  record.set(&TraversalRecord::light_face, arguments.ray.get(&RayRecord::light_face));
-  record.set(&TraversalRecord::slot, cn::pe_num() + arguments.first_slot);
+  const poly<std::int32_t> light_face = ray.get(&RayRecord::light_face);
+  const mask seeks_light = light_face != poly<std::int32_t>(kNoFace);
+  record.set(&TraversalRecord::origin, ray.get(&RayRecord::origin));
+  record.set(&TraversalRecord::direction, ray.get(&RayRecord::direction));
+  record.set(&TraversalRecord::left_face, ray.get(&RayRecord::left_face));
+  record.set(&TraversalRecord::light_face, light_face);
+  record.set(&TraversalRecord::slot, arguments.ray.get(&QueuedRay::slot));
+  record.set(&TraversalRecord::leaf,
+             arguments.ray.get(&QueuedRay::light) * kLightRun + arguments.first_light_run);
+  record.set(&TraversalRecord::leaf_count,
+             cn::select(seeks_light, poly<std::int32_t>(kLightRun), poly<std::int32_t>(0)));
   const Nearest nothing;
   record.set(&TraversalRecord::distance, nothing.distance);
   record.set(&TraversalRecord::determinant, nothing.determinant);
@@ -53,36 +78,10 @@ void write_new_ray(const BeginArguments& arguments, const RayOperands& ray) {
   const poly<std::int32_t> zero = 0;
   record.set(&TraversalRecord::node, zero);
   record.set(&TraversalRecord::level, zero);
-  record.set(&TraversalRecord::leaf, zero);
-  record.set(&TraversalRecord::leaf_count, zero);
   record.set(&TraversalRecord::trail, poly<std::uint64_t>(0u));
   record.set(&TraversalRecord::more, poly<std::uint32_t>(0u));
   record.set(&TraversalRecord::stack, zero);
-}
-
-/// The copies of a light's triangles, by its place among the lights.
-poly<std::int32_t> light_run(const BeginArguments& arguments) {
-  const poly<std::uint64_t> offset = arguments.light_place.read() - arguments.lights;
-  const poly<double> index = cn::convert<double>(cn::low_word(offset)) * (1.0 / sizeof(LightRecord)) + 0.5;
-  return cn::convert<std::int32_t>(index) * kLightRun + arguments.first_light_run;
-}
-
-template <NodeFormat format>
-void begin(const BeginArguments& arguments) {
-  const RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
-                        arguments.ray.get(&RayRecord::left_face)};
-  write_new_ray(arguments, ray);
-  Way way(arguments.record);
-  cn::poly_if_any(arguments.ray.get(&RayRecord::light_face) != poly<std::int32_t>(kNoFace), [&] {
-    way.leaf = light_run(arguments);
-    way.leaf_count = kLightRun;
-  });
-  const BoxRay box_ray(ray.origin, ray.direction);
-  Traveller<format>(arguments.tree, arguments.record, box_ray, kNoTreelet,
-                    std::numeric_limits<double>::infinity(), way)
-      .travel();
-  way.write(arguments.record);
-  cn::keep(!way.is_over(), *arguments.alive);
+  arguments.treelet.write(poly<std::int32_t>(kNoTreelet));
 }
 
 /// The node that a ray is likely to ask for next: on the stack it may be culled yet.
@@ -134,9 +133,11 @@ void locate(const LocateArguments& arguments) {
 void test_leaf(const TraverseArguments& arguments, const RayOperands& ray, NearestFace& nearest, Way& way) {
   const poly<std::int32_t> light_face = arguments.record.get(&TraversalRecord::light_face);
   nearest.face.become(light_face);
-  search(ray, arguments.reach,
-         PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), way.leaf_count}, nearest);
-  cn::poly_if(way.leaf_count > 0, [&] {
+  const poly<std::int32_t> there =
+      cn::select(cn::recall(*arguments.loaded_leaf), way.leaf_count, poly<std::int32_t>(0));
+  search(ray, arguments.reach, PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), there},
+         nearest);
+  cn::poly_if(there > 0, [&] {
     const mask nothing = nearest.number < 0;
     arguments.record.set(&TraversalRecord::light_face,
                          cn::select(nothing, poly<std::int32_t>(kNoFace), light_face));
@@ -157,7 +158,7 @@ void traverse(const TraverseArguments& arguments) {
   nearest.determinant.become(arguments.record.get(&TraversalRecord::determinant));
   nearest.number.become(arguments.record.get(&TraversalRecord::number));
   Way way(arguments.record);
-  if (arguments.tests_leaves) test_leaf(arguments, ray, nearest, way);
+  if (arguments.loaded_leaf != nullptr) test_leaf(arguments, ray, nearest, way);
   const poly<double> limit = latest_entry(nearest.distance / cn::abs(nearest.determinant));
   const BoxRay box_ray(ray.origin, ray.direction);
   Traveller<format>(arguments.tree, arguments.record, box_ray, arguments.treelet.read(), limit, way).travel();
@@ -192,10 +193,6 @@ void recall(const RecallArguments& arguments) {
 }
 
 template <NodeFormat format>
-constexpr cn::Kernel<BeginArguments> begin_kernel() {
-  return cn::kernel<BeginArguments, begin<format>>("begin");
-}
-template <NodeFormat format>
 constexpr cn::Kernel<TraverseArguments> traverse_kernel() {
   return cn::kernel<TraverseArguments, traverse<format>>("traverse");
 }
@@ -204,8 +201,9 @@ constexpr cn::Kernel<TraverseArguments> traverse_kernel() {
 
 const TraversalKernels& TRAVERSAL_KERNELS() {
   static constexpr TraversalKernels table{
-      {begin_kernel<NodeFormat::fp64>(), begin_kernel<NodeFormat::fp32>(),
-       begin_kernel<NodeFormat::quantised8>()},
+      cn::kernel<EnqueueArguments, enqueue>("enqueue"),
+      cn::kernel<TakeRaysArguments, take_rays>("take_rays"),
+      cn::kernel<EnterArguments, enter>("enter"),
       cn::kernel<LocateArguments, locate>("locate"),
       {traverse_kernel<NodeFormat::fp64>(), traverse_kernel<NodeFormat::fp32>(),
        traverse_kernel<NodeFormat::quantised8>()},

@@ -20,19 +20,35 @@ struct TreeInSram {
   int treelet_offset = 0;   ///< of the treelet that was loaded
 };
 
-/// Ray bin: a ray begins at the root, a shadow ray at its light.
-struct BeginArguments {
-  PolyPointer<RayRecord> ray;
-  PolyField<MonoAddress> light_place;  ///< of the light that a shadow ray was sent to
+/// Behind the stages that make rays: packs them into the ray bin.
+struct EnqueueArguments {
+  PolyField<std::int32_t> number;  ///< ascending numbers of the lanes with a ray
+  PolyPointer<QueuedRay> ray;
+  PolyField<MonoAddress> light_place;  ///< of the light that shadow rays are sent to
   MonoAddress lights = 0;
-  int first_light_run = 0;  ///< in the triangle array
   int first_slot = 0;
-  TreeInSram tree;
-  PolyPointer<TraversalRecord> record;
-  LaneMask* alive = nullptr;
+  MonoAddress first_place = 0;  ///< for number 0
+  PolyField<MonoAddress> place;
 };
 
-/// Traversal bin, before the loads: where each ray's leaf and treelet lie.
+/// Which of the rays in the ray bin each idle PE takes.
+struct TakeRaysArguments {
+  PolyField<std::int32_t> number;  ///< ascending numbers of the idle PEs
+  std::int32_t rays = 0;           ///< that there are
+  MonoAddress first_place = 0;
+  PolyField<MonoAddress> place;
+  LaneMask* takes = nullptr;
+};
+
+/// A ray begins at the root, a shadow ray at its light.
+struct EnterArguments {
+  PolyPointer<QueuedRay> ray;
+  int first_light_run = 0;  ///< in the triangle array
+  PolyPointer<TraversalRecord> record;
+  PolyField<std::int32_t> treelet;  ///< is set to none
+};
+
+/// Before the loads: where each ray's leaf and treelet lie.
 struct LocateArguments {
   PolyPointer<TraversalRecord> record;
   TreeShape shape;
@@ -45,14 +61,14 @@ struct LocateArguments {
   LaneMask* needs_treelet = nullptr;
 };
 
-/// Traversal bin: tests the leaf, then goes on to the next leaf or to where the loaded nodes end.
+/// Tests the leaf, then goes on to the next leaf or to where the loaded nodes end.
 struct TraverseArguments {
   PolyPointer<TraversalRecord> record;
   PolyPointer<TriangleRecord> leaf;
   PolyField<std::int32_t> treelet;
   TreeInSram tree;
   double reach = 0;  ///< of the scene (triangle_record.hpp)
-  bool tests_leaves = true;  ///< false when no PE has one
+  const LaneMask* loaded_leaf = nullptr;  ///< nothing when no PE has one
   LaneMask* alive = nullptr;
 };
 
@@ -85,9 +101,11 @@ struct RecallArguments {
 };
 
 struct TraversalKernels {
-  cn::Kernel<BeginArguments> begin[kNodeFormats];  ///< by NodeFormat
+  cn::Kernel<EnqueueArguments> enqueue;
+  cn::Kernel<TakeRaysArguments> take_rays;
+  cn::Kernel<EnterArguments> enter;
   cn::Kernel<LocateArguments> locate;
-  cn::Kernel<TraverseArguments> traverse[kNodeFormats];
+  cn::Kernel<TraverseArguments> traverse[kNodeFormats];  ///< by NodeFormat
   cn::Kernel<FinishArguments> finish;
   cn::Kernel<AppendRaysArguments> append_rays;
   cn::Kernel<RecallArguments> recall;

@@ -24,6 +24,7 @@ const char* buffering_name(const path_tracer::ProgramConfig& program) {
 
 Json program_json(const RenderOptions& options) {
   const path_tracer::ProgramConfig& program = options.program;
+  const path_tracer::TreeShape& tree = program.tree;
   return {{"program", program_name(program.program)},
           {"n", program.n},
           {"buffer", buffering_name(program)},
@@ -34,6 +35,12 @@ Json program_json(const RenderOptions& options) {
           {"roulette_start", program.roulette_start},
           {"max_survival", program.max_survival},
           {"seed", program.seed},
+          {"traversal", traversal_name(program.traversal)},
+          {"node_format", node_format_name(tree.layout.format)},
+          {"leaf_triangles", tree.leaf_triangles},
+          {"treelet_nodes", tree.treelet_nodes},
+          {"resident_nodes", tree.resident_nodes},
+          {"stack_entries", tree.stack_entries},
           {"samples", options.work.samples}};
 }
 

@@ -26,20 +26,26 @@ inline Lanes<std::uint64_t> word_index(const poly<std::int32_t>& address) {
   return select_lanes(MaskLanes(strip.enabled), index, broadcast(std::uint64_t{0}));
 }
 
-inline Lanes<std::uint64_t> gather(const Lanes<std::uint64_t>& index) {
-  return each_chunk<std::uint64_t>([&](int i) {
-    using Chunk = Lanes<std::uint64_t>::Chunk;
-#if defined(__AVX512F__)
-    return Chunk(_mm512_mask_i64gather_epi64(_mm512_setzero_si512(), 0xff, __m512i(index.chunk[i]),
-                                             strip.poly_words, 8));
-#elif defined(__AVX2__)
-    return Chunk(_mm256_i64gather_epi64(reinterpret_cast<const long long*>(strip.poly_words),
-                                        __m256i(index.chunk[i]), 8));
-#else
-    return Chunk{strip.poly_words[index.chunk[i][0]], strip.poly_words[index.chunk[i][1]]};
-#endif
-  });
+/// Each lane's own words, by scalar loads: a gather instruction takes several times as many operations.
+template <std::size_t... lane>
+inline Lanes<std::uint64_t>::Chunk gather_chunk(const std::uint64_t* const* pointer, std::size_t offset,
+                                                std::index_sequence<lane...>) {
+  return Lanes<std::uint64_t>::Chunk{pointer[lane][offset]...};
 }
+
+struct LanePointers {
+  const std::uint64_t* lane[kStripLanes];
+
+  explicit LanePointers(const Lanes<std::uint64_t>& index) {
+    for (int i = 0; i < kStripLanes; ++i) lane[i] = strip.poly_words + index[i];
+  }
+  Lanes<std::uint64_t> gather(std::size_t offset) const {
+    constexpr std::size_t kInChunk = Lanes<std::uint64_t>::kChunkBytes / sizeof(std::uint64_t);
+    return each_chunk<std::uint64_t>([&](int i) {
+      return gather_chunk(lane + std::size_t(i) * kInChunk, offset, std::make_index_sequence<kInChunk>());
+    });
+  }
+};
 
 /// Bits by which a 4-byte variable stands in its 8-byte word.
 inline Lanes<std::uint64_t> shift_in_word(const poly<std::int32_t>& address) {
@@ -67,7 +73,8 @@ inline poly<T> load_at(const poly<std::int32_t>& address) {
   static_assert(sizeof(T) == 8 || std::is_integral_v<T>);
   issue(InstructionClass::sram, sizeof(T) / 4);
   indexed_detail::observe(Access::read, address, sizeof(T));
-  const Lanes<std::uint64_t> words = indexed_detail::gather(indexed_detail::word_index(address));
+  const Lanes<std::uint64_t> words =
+      indexed_detail::LanePointers(indexed_detail::word_index(address)).gather(0);
   using Lane = typename poly<T>::Lane;
   if constexpr (sizeof(T) == 8) {
     return poly<T>(bit_cast_lanes<Lane>(words));
@@ -88,6 +95,44 @@ inline void store_at(const poly<std::int32_t>& address, const poly<std::uint64_t
     strip.poly_words[index[lane]] = value.lanes()[lane];
   }
 }
+
+/// A record that each PE has at an address of its own.
+class IndexedRecord {
+ public:
+  /// @param address see load_at; a multiple of 8
+  explicit IndexedRecord(const poly<std::int32_t>& address)
+      : address_(address), pointers_(indexed_detail::word_index(address)) {}
+
+  /// The 8 bytes at an offset that is the same for all PEs, a multiple of 8.
+  template <class T>
+  poly<T> load(int offset_bytes) const {
+    static_assert(sizeof(T) == 8);
+    issue(InstructionClass::sram, 2);
+    observe(offset_bytes, 8);
+    return poly<T>(bit_cast_lanes<typename poly<T>::Lane>(
+        pointers_.gather(std::size_t(unsigned(offset_bytes) / 8) * unsigned(strip.num_pes))));
+  }
+
+  /// Of two variables that were loaded the one that each PE's condition chooses: on the chip the condition makes
+  /// part of the address, so that each is read where it is wanted and no instruction chooses.
+  template <class T>
+  static poly<T> chosen(const mask& condition, const poly<T>& if_set, const poly<T>& otherwise) {
+    return poly<T>(select_lanes(condition.lanes(), if_set.lanes(), otherwise.lanes()));
+  }
+
+ private:
+  void observe(int offset_bytes, int bytes) const {
+    if constexpr (kObservedSram) {
+      poly<std::int32_t> at(address_);
+      at.become(poly<std::int32_t>(each_chunk<std::int64_t>(
+          [&](int i) { return address_.lanes().chunk[i] + std::int64_t{offset_bytes}; })));
+      indexed_detail::observe(Access::read, at, bytes);
+    }
+  }
+
+  poly<std::int32_t> address_;
+  indexed_detail::LanePointers pointers_;
+};
 
 /// Shifts by an amount of each PE's own, 0 to 63. The ALU shifts by one fixed amount a pass, so that is a
 /// conditional pass for each bit of the amount.

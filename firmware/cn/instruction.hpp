@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <string_view>
 #include <vector>
 
@@ -107,20 +108,44 @@ struct IssueCounts {
 class IssueTree {
  public:
   struct Node;
-  using Region = std::vector<Node>;  // one node an iteration
+  using Region = std::vector<Node*>;  // one node an iteration
 
   struct Node {
     IssueCounts counts;
     bool reached = false;
     std::uint64_t enabled_lanes = 0;
     std::vector<Region> regions;  // in the order in which the node's code enters them
+
+    /// As new, but for the memory that it holds.
+    void clear() {
+      counts = IssueCounts{};
+      reached = false;
+      enabled_lanes = 0;
+      for (Region& region : regions) region.clear();
+    }
   };
+
+  IssueTree() = default;
+  IssueTree(const IssueTree&) = delete;
+  IssueTree& operator=(const IssueTree&) = delete;
 
   Node& root() { return root_; }
   const Node& root() const { return root_; }
 
-  /// Ready for the next kernel.
-  void clear() { root_ = Node{}; }
+  /// The node for an iteration of a region of `parent`; iterations come one after the other. Stays where it is
+  /// until clear().
+  Node& node(Node& parent, std::size_t region, std::size_t iteration) {
+    if (parent.regions.size() <= region) parent.regions.resize(region + 1);
+    Region& iterations = parent.regions[region];
+    while (iterations.size() <= iteration) iterations.push_back(&take());
+    return *iterations[iteration];
+  }
+
+  /// Ready for the next kernel. Nodes are kept and used again: a kernel has dozens, and there are many kernels.
+  void clear() {
+    root_.clear();
+    used_ = 0;
+  }
 
   template <class Visitor>  // (const Node&) -> void
   void for_each_node(Visitor&& visit) const {
@@ -134,15 +159,24 @@ class IssueTree {
   }
 
  private:
+  Node& take() {
+    if (used_ == pool_.size()) pool_.emplace_back();
+    Node& node = pool_[used_++];
+    node.clear();
+    return node;
+  }
+
   template <class Visitor>
   static void visit_node(const Node& node, Visitor& visit) {
     if (!node.reached) return;
     visit(node);
     for (const Region& region : node.regions)
-      for (const Node& iteration : region) visit_node(iteration, visit);
+      for (const Node* iteration : region) visit_node(*iteration, visit);
   }
 
   Node root_;
+  std::deque<Node> pool_;  ///< whose nodes stay where they are
+  std::size_t used_ = 0;
 };
 
 }  // namespace cn

@@ -34,8 +34,8 @@ template <class Arguments, void (*program)(const Arguments&)>
     if (bits == 0) continue;
     strip.first_pe = first_pe;
     strip.enabled = mask_from_bits(bits);
-    strip.issued = StripCounts{};
-    strip.node = &issued.root();
+    strip.tree = &issued;
+    enter_node(issued.root());
     strip.next_region = 0;
     issued.root().enabled_lanes += static_cast<std::uint64_t>(__builtin_popcount(bits));
     program(arguments);

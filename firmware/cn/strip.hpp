@@ -28,6 +28,7 @@ inline constexpr bool kObservedSram = false;
 struct Strip {
   StoredMask enabled{};                 ///< PEs that take part in assignments
   StripCounts issued;                   ///< instructions since the last flush into `node`
+  IssueTree* tree = nullptr;            ///< of the kernel
   IssueTree::Node* node = nullptr;      ///< where in the kernel's control flow the strip is
   std::size_t next_region = 0;          ///< ordinal of the next data-dependent region in `node`
   std::uint64_t* poly_words = nullptr;  ///< word w of PE p is at [w * num_pes + p]
@@ -49,30 +50,34 @@ inline void observe_sram(Access access, PolySpan bytes) {
       strip.observer->touches_poly(access, bytes, strip.first_pe, mask_bits(strip.enabled));
 }
 
-/// Books what was issued since the last flush; only the first strip to pass a node counts its instructions.
+/// From here on instructions belong to `node`. Only the first strip to pass a node counts its instructions; the
+/// others leave behind what nobody reads.
+inline void enter_node(IssueTree::Node& node) {
+  strip.node = &node;
+  if (!node.reached) strip.issued = StripCounts{};
+}
+
+/// Books what was issued since the node was entered.
 inline void flush_issued() {
-  if (!strip.node->reached)
-    for (std::size_t i = 0; i < kInstructionClasses; ++i)
-      strip.node->counts.by_class[i] += strip.issued.by_class[i];
-  strip.issued = StripCounts{};
+  if (strip.node->reached) return;
+  for (std::size_t i = 0; i < kInstructionClasses; ++i)
+    strip.node->counts.by_class[i] += strip.issued.by_class[i];
 }
 
 /// Runs `body` as the given iteration of a data-dependent region of the current node.
 template <class Body>
 inline void run_node(std::size_t region, std::size_t iteration, Body&& body) {
-  IssueTree::Node* const parent = strip.node;
+  IssueTree::Node& parent = *strip.node;
   const std::size_t parent_next_region = strip.next_region;
   flush_issued();
-  if (parent->regions.size() <= region) parent->regions.resize(region + 1);
-  IssueTree::Region& iterations = parent->regions[region];
-  if (iterations.size() <= iteration) iterations.resize(iteration + 1);
-  strip.node = &iterations[iteration];
+  IssueTree::Node& node = strip.tree->node(parent, region, iteration);
+  node.enabled_lanes += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(strip.enabled)));
+  enter_node(node);
   strip.next_region = 0;
-  strip.node->enabled_lanes += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(strip.enabled)));
   body();
   flush_issued();
-  strip.node->reached = true;
-  strip.node = parent;
+  node.reached = true;
+  enter_node(parent);
   strip.next_region = parent_next_region;
 }
 

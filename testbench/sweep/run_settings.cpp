@@ -14,6 +14,7 @@ namespace {
 
 using model::Effect;
 using path_tracer::ProgramConfig;
+using path_tracer::TreeShape;
 using Values = std::vector<std::string>;
 
 constexpr int kMostSamples = 1 << 20;
@@ -75,6 +76,34 @@ const Values& shadow_ray_names() {
 const Values& timing_names() {
   static const Values names = {"lt", "at"};
   return names;
+}
+
+const Values& traversal_names() {
+  static const Values names = {"brute_force", "temporary_bin", "refill", "lock_step"};
+  return names;
+}
+const Values& node_format_names() {
+  static const Values names = {"fp64", "fp32", "quantised8"};
+  return names;
+}
+
+template <int TreeShape::*member, int low, int high>
+RunParameter tree_integer(const std::string& name) {
+  return {"firmware." + name, integers(low, high), Effect::stream,
+          [](RunSettings& run, const std::string& text) {
+            return write_integer(run.options.program.tree.*member, text, low, high);
+          },
+          [](const RunSettings& run) { return std::to_string(run.options.program.tree.*member); }};
+}
+
+RunParameter node_format() {
+  return {"firmware.node_format", one_of(node_format_names()), Effect::stream,
+          [](RunSettings& run, const std::string& value) {
+            return write_choice(run.options.program.tree.layout.format, value, node_format_names());
+          },
+          [](const RunSettings& run) {
+            return node_format_names()[std::size_t(run.options.program.tree.layout.format)];
+          }};
 }
 
 template <int ProgramConfig::*member, int low, int high>
@@ -185,7 +214,13 @@ std::vector<RunParameter> declare() {
           firmware_choice<&ProgramConfig::light_sampling, light_sampling_names>("light_sampling"),
           firmware_integer<&ProgramConfig::roulette_start, 0, 1 << 20>("roulette_start"),
           max_survival(),
-          seed()};
+          seed(),
+          firmware_choice<&ProgramConfig::traversal, traversal_names>("traversal"),
+          node_format(),
+          tree_integer<&TreeShape::leaf_triangles, 1, path_tracer::kMaxLeafTriangles>("leaf_triangles"),
+          tree_integer<&TreeShape::treelet_nodes, 1, path_tracer::kMaxTreeletNodes>("treelet_nodes"),
+          tree_integer<&TreeShape::resident_nodes, 1, path_tracer::kMaxTreeletNodes>("resident_nodes"),
+          tree_integer<&TreeShape::stack_entries, 0, path_tracer::kMaxStackEntries>("stack_entries")};
 }
 
 void refuse(const Setting& setting, const std::string& allowed) {

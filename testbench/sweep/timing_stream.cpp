@@ -44,11 +44,9 @@ struct KernelArguments {
 void issue_again(const KernelArguments& arguments, cn::PolyMemory&, const cn::LaneMask&,
                  cn::IssueTree& issued) {
   const std::uint64_t nodes = arguments.calls->number();
-  cn::IssueTree::Node& root = issued.root();
-  root.regions.resize(1);
-  root.regions[0].resize(nodes - 1);
+  issued.clear();
   for (std::uint64_t i = 0; i < nodes; ++i) {
-    cn::IssueTree::Node& node = i == 0 ? root : root.regions[0][i - 1];
+    cn::IssueTree::Node& node = i == 0 ? issued.root() : issued.node(issued.root(), 0, i - 1);
     node.counts = arguments.stream->issued[arguments.calls->number()];
     node.enabled_lanes = arguments.calls->number();
     node.reached = true;

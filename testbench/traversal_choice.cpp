@@ -1,0 +1,107 @@
+#include "testbench/traversal_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "firmware/path_tracer/kernels.hpp"
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "testbench/native_machine.hpp"
+
+namespace testbench {
+namespace {
+
+using path_tracer::ProgramConfig;
+using path_tracer::Traversal;
+
+/// Cycles of a poly program on all PEs.
+double cycles_of(const cn::IssueCounts& counts, const model::ChipConfig& chip) {
+  double cycles = 0;
+  for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
+    if (cn::InstructionClass(i) != cn::InstructionClass::mono)
+      cycles += double(counts.by_class[i]) * chip.poly.cycles[i];
+  return cycles * chip.poly.code_quality_factor;
+}
+
+/// What the intersect kernel issues for so many triangles.
+double intersect_cycles(int triangles, const model::ChipConfig& chip) {
+  constexpr int kPes = 8;
+  cn::PolyMemory memory(kPes, 1024);
+  const std::vector<path_tracer::TriangleRecord> records(std::size_t(triangles) + 1);
+  cn::LaneMask hit;
+  path_tracer::IntersectArguments arguments;
+  arguments.ray = cn::PolyPointer<path_tracer::RayRecord>(memory.allocate("ray", sizeof(path_tracer::RayRecord)));
+  arguments.hit = cn::PolyPointer<path_tracer::HitRecord>(memory.allocate("hit", sizeof(path_tracer::HitRecord)));
+  arguments.surface_place = {memory.allocate("place", sizeof(cn::MonoAddress)).offset_bytes};
+  arguments.triangles = records.data();
+  arguments.triangle_count = triangles;
+  arguments.hit_something = &hit;
+  cn::IssueTree issued;
+  path_tracer::kernels(path_tracer::Level::x86_64_v2)
+      .intersect.run(arguments, memory, cn::LaneMask::first(kPes), issued);
+  return cycles_of(issued.total(), chip);
+}
+
+/// Of a ray on its way through the tree, by the number of triangles; measured on `csx600 scene blob`.
+struct Visits {
+  double leaves;
+  double treelets;
+  double turns;
+};
+Visits visits_of_a_ray(std::size_t triangles) {
+  const double doublings = std::log2(std::max(1.0, double(triangles) / 16));
+  return {1.2 + 0.13 * doublings, 0.19 * doublings, 2.2 + 0.29 * doublings};
+}
+
+/// Per block and turn: traverse and the small kernels beside it, of the cost table's cycles.
+constexpr double kTurnCycles = 4500;
+
+std::string in_words(double cycles) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.0f", cycles);
+  return text;
+}
+
+}  // namespace
+
+TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
+                                  const model::ChipConfig& chip) {
+  const double pes = chip.chip.pes;
+  TraversalCosts costs;
+  costs.brute_force = (intersect_cycles(1, chip) - intersect_cycles(0, chip)) * double(triangles) / pes;
+  const Visits visits = visits_of_a_ray(triangles);
+  const auto request = [&](double bytes) { return chip.pio.per_pe_cycles + bytes / chip.pio.bytes_per_cycle; };
+  const double leaf_bytes = double(tree.leaf_records()) * sizeof(path_tracer::TriangleRecord);
+  const double pio = visits.leaves * request(leaf_bytes) + visits.treelets * request(tree.treelet_bytes()) +
+                     2 * request(sizeof(path_tracer::QueuedRay)) + request(sizeof(path_tracer::HitRecord)) +
+                     request(sizeof(cn::MonoAddress));
+  const double kernels = visits.turns * kTurnCycles * chip.poly.code_quality_factor / pes;
+  costs.tree = std::max(pio, kernels);
+  return costs;
+}
+
+TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
+                                 const model::ChipConfig& chip) {
+  const TraversalCosts costs = estimate_traversal(triangles, tree, chip);
+  const bool uses_tree = costs.tree < costs.brute_force;
+  return {uses_tree ? Traversal::refill : Traversal::brute_force,
+          std::to_string(triangles) + " triangles: about " + in_words(costs.brute_force) +
+              " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
+}
+
+int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program, const model::ChipConfig& chip) {
+  ProgramConfig least = program;
+  least.tree.resident_nodes = 1;
+  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
+  constexpr int kPlenty = 1 << 18;
+  NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
+  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least, layout,
+                                      {});
+  const int used = machine.poly_memory().used_bytes();
+  const int left = chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - used;
+  const auto nodes_of_tree = static_cast<int>(std::min<std::size_t>(triangles, path_tracer::kMaxTreeletNodes));
+  return std::clamp(1 + left / program.tree.layout.node_bytes(), 1, std::max(1, nodes_of_tree));
+}
+
+}  // namespace testbench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "firmware/path_tracer/program.hpp"
+#include "model/chip_config.hpp"
+
+namespace testbench {
+
+/// A way through a scene, and why.
+struct TraversalChoice {
+  path_tracer::Traversal traversal = path_tracer::Traversal::brute_force;
+  std::string reason;  ///< one line
+};
+
+/// What a ray costs, in cycles of the chip, as far as a simple model tells.
+struct TraversalCosts {
+  double brute_force = 0;
+  double tree = 0;  ///< with refill
+};
+
+/// Brute force: what the intersect kernel issues for a triangle. With a tree: its PIO requests or its kernels,
+/// whichever takes longer, with as many leaves, treelets and nodes a ray as the generated scenes showed
+/// (README, "Real scenes").
+TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
+                                  const model::ChipConfig& chip);
+
+/// Whichever costs less.
+TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
+                                 const model::ChipConfig& chip);
+
+/// As many nodes as the SRAM has room for beside everything else, at least one and no more than a tree of so many
+/// triangles has.
+int resident_nodes_that_fit(std::size_t triangles, const path_tracer::ProgramConfig& program,
+                            const model::ChipConfig& chip);
+
+}  // namespace testbench

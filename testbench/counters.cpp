@@ -123,7 +123,8 @@ const Counters<RunCounts>& firmware_counters() {
       {{"traversal.treelet_loads", "count", "treelets that a ray loaded"},
        [](const RunCounts& c) { return Json(c.traversal.treelet_loads); }},
       {{"traversal.rays_by_pass.*", "count",
-        "rays that went through the traversal bin for the first, second, ... time, after their start as pass 0"},
+        "rays that went through the traversal bin for the first, second, ... time, after their start as pass "
+        "0"},
        [](const RunCounts& c) { return Json(c.traversal.rays); }},
       {{"traversal.lanes_by_pass.*", "count", "PEs of the blocks that these rays filled"},
        [](const RunCounts& c) { return Json(c.traversal.lanes); }},

@@ -78,7 +78,8 @@ class Edges {
   std::vector<std::size_t> group_;
 };
 
-/// Within rounding of the plane through `triangle`, whose unit normal is given: 2^-40 of the distances involved.
+/// Within rounding of the plane through `triangle`, whose unit normal is given: 2^-40 of the distances
+/// involved.
 bool lies_in_plane(const Triangle& triangle, const glm::dvec3& normal, const Triangle& other) {
   constexpr double kTolerance = 0x1p-40;
   return std::all_of(std::begin(other.vertex), std::end(other.vertex), [&](const glm::dvec3& vertex) {

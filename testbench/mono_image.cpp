@@ -74,7 +74,8 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
 struct Lights {
   std::vector<LightRecord> records;
   std::vector<double> cdf;
-  std::vector<std::array<std::size_t, path_tracer::kLightRun>> triangles;  ///< of each light; one may stand twice
+  std::vector<std::array<std::size_t, path_tracer::kLightRun>>
+      triangles;  ///< of each light; one may stand twice
 };
 
 /// Part of the scene that is sampled as one light.
@@ -254,7 +255,8 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   put_surfaces(image, scene, faces);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
-  if (config.uses_tree()) std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
+  if (config.uses_tree())
+    std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
   return image;
 }
 

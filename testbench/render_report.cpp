@@ -35,6 +35,7 @@ Json program_json(const RenderOptions& options) {
           {"roulette_start", program.roulette_start},
           {"max_survival", program.max_survival},
           {"seed", program.seed},
+          {"pixel_stride", program.pixel_stride},
           {"traversal", traversal_name(program.traversal)},
           {"node_format", node_format_name(tree.layout.format)},
           {"leaf_triangles", tree.leaf_triangles},
@@ -94,6 +95,18 @@ void add_host_rows(const RenderRequest& request, const RenderResult& result, Row
                     text("%.1f times", rate / silicon) + text(" (paper: %.0f segments/s)", silicon));
 }
 
+void add_traversal_row(const RenderRequest& request, const path_tracer::RunCounts& counts, Rows& rows) {
+  const path_tracer::ProgramConfig& program = request.options.program;
+  std::string row = traversal_name(program.traversal);
+  if (program.uses_tree()) {
+    const double rays = double(counts.segments + counts.shadow_rays);
+    row += text(": %.2f leaves", double(counts.traversal.leaf_loads) / rays) +
+           text(", %.2f treelets loaded a ray", double(counts.traversal.treelet_loads) / rays);
+  }
+  if (!request.traversal_reason.empty()) row += " (" + request.traversal_reason + ")";
+  rows.emplace_back("traversal", row);
+}
+
 const char* timing_name(model::TimingStyle timing) {
   return timing == model::TimingStyle::approximately_timed ? "at" : "lt";
 }
@@ -107,6 +120,7 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   json["width"] = result.film.size().width;
   json["height"] = result.film.size().height;
   json["firmware"] = program_json(request.options);
+  if (!request.traversal_reason.empty()) json["traversal_chosen_because"] = request.traversal_reason;
   json["machine"] = request.native ? "native" : "chip";
   json["timing"] = request.native ? "none" : timing_name(request.options.timing);
   json["chip_preset"] = request.options.chip.preset;
@@ -129,6 +143,7 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
   rows.emplace_back("path segments", text("%.0f", double(counts.segments)) +
                                          text(" of %.0f paths", double(counts.paths)) +
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));
+  add_traversal_row(request, counts, rows);
   if (result.chip) add_chip_rows(result, rows);
   add_host_rows(request, result, rows);
   std::string table;

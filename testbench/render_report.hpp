@@ -13,6 +13,8 @@ struct RenderRequest {
   std::string scene;
   RenderOptions options;
   bool native = false;
+  std::string traversal_reason =
+      {};  ///< why the host chose the way through the scene; empty when the user did
 };
 
 /// The statistics file. Everything but the section `host` is the same for the same inputs, byte for byte.

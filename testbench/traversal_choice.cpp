@@ -31,8 +31,10 @@ double intersect_cycles(int triangles, const model::ChipConfig& chip) {
   const std::vector<path_tracer::TriangleRecord> records(std::size_t(triangles) + 1);
   cn::LaneMask hit;
   path_tracer::IntersectArguments arguments;
-  arguments.ray = cn::PolyPointer<path_tracer::RayRecord>(memory.allocate("ray", sizeof(path_tracer::RayRecord)));
-  arguments.hit = cn::PolyPointer<path_tracer::HitRecord>(memory.allocate("hit", sizeof(path_tracer::HitRecord)));
+  arguments.ray =
+      cn::PolyPointer<path_tracer::RayRecord>(memory.allocate("ray", sizeof(path_tracer::RayRecord)));
+  arguments.hit =
+      cn::PolyPointer<path_tracer::HitRecord>(memory.allocate("hit", sizeof(path_tracer::HitRecord)));
   arguments.surface_place = {memory.allocate("place", sizeof(cn::MonoAddress)).offset_bytes};
   arguments.triangles = records.data();
   arguments.triangle_count = triangles;
@@ -43,19 +45,28 @@ double intersect_cycles(int triangles, const model::ChipConfig& chip) {
   return cycles_of(issued.total(), chip);
 }
 
-/// Of a ray on its way through the tree, by the number of triangles; measured on `csx600 scene blob`.
+/// Of a ray on its way through the tree, by the number of triangles: measured on `csx600 scene blob`.
 struct Visits {
   double leaves;
   double treelets;
   double turns;
 };
 Visits visits_of_a_ray(std::size_t triangles) {
-  const double doublings = std::log2(std::max(1.0, double(triangles) / 16));
-  return {1.2 + 0.13 * doublings, 0.19 * doublings, 2.2 + 0.29 * doublings};
+  const double doublings = std::max(0.0, std::log2(double(std::max<std::size_t>(1, triangles)) / 50));
+  return {2.9, 0.22 * doublings, 3.7 + 0.21 * doublings};
 }
 
-/// Per block and turn: traverse and the small kernels beside it, of the cost table's cycles.
-constexpr double kTurnCycles = 4500;
+/// What the kernels of a turn take, in tests of a triangle, and the share of PEs that have a ray; as above.
+constexpr double kTrianglesOfATurn = 36;
+constexpr double kOccupancy = 0.8;
+
+/// When the data cache does not hold all triangles from one block to the next.
+double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
+  const double lines = double(sizeof(path_tracer::TriangleRecord)) / chip.control.cache_line_bytes;
+  return lines * (chip.control.cache_miss_cycles + chip.ddr.page_miss_cycles +
+                  2.0 * chip.clear_connect.hops_to_ddr * chip.clear_connect.hop_cycles +
+                  double(chip.control.cache_line_bytes) / chip.clear_connect.bytes_per_cycle);
+}
 
 std::string in_words(double cycles) {
   char text[32];
@@ -69,14 +80,19 @@ TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::Tree
                                   const model::ChipConfig& chip) {
   const double pes = chip.chip.pes;
   TraversalCosts costs;
-  costs.brute_force = (intersect_cycles(1, chip) - intersect_cycles(0, chip)) * double(triangles) / pes;
+  const double triangle_cycles = intersect_cycles(1, chip) - intersect_cycles(0, chip);
+  const double bytes = double(triangles) * sizeof(path_tracer::TriangleRecord);
+  const double fetch_cycles = bytes > chip.control.data_cache_bytes ? fetch_cycles_of_a_triangle(chip) : 0;
+  costs.brute_force = (triangle_cycles + fetch_cycles) * double(triangles) / pes;
   const Visits visits = visits_of_a_ray(triangles);
-  const auto request = [&](double bytes) { return chip.pio.per_pe_cycles + bytes / chip.pio.bytes_per_cycle; };
+  const auto request = [&](double of_bytes) {
+    return chip.pio.per_pe_cycles + of_bytes / chip.pio.bytes_per_cycle;
+  };
   const double leaf_bytes = double(tree.leaf_records()) * sizeof(path_tracer::TriangleRecord);
   const double pio = visits.leaves * request(leaf_bytes) + visits.treelets * request(tree.treelet_bytes()) +
                      2 * request(sizeof(path_tracer::QueuedRay)) + request(sizeof(path_tracer::HitRecord)) +
                      request(sizeof(cn::MonoAddress));
-  const double kernels = visits.turns * kTurnCycles * chip.poly.code_quality_factor / pes;
+  const double kernels = visits.turns * kTrianglesOfATurn * triangle_cycles / (pes * kOccupancy);
   costs.tree = std::max(pio, kernels);
   return costs;
 }
@@ -90,18 +106,25 @@ TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeS
               " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
 }
 
-int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program, const model::ChipConfig& chip) {
+int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program,
+                            const model::ChipConfig& chip) {
   ProgramConfig least = program;
   least.tree.resident_nodes = 1;
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
   constexpr int kPlenty = 1 << 18;
   NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
-  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least, layout,
-                                      {});
+  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least,
+                                      layout, {});
   const int used = machine.poly_memory().used_bytes();
   const int left = chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - used;
-  const auto nodes_of_tree = static_cast<int>(std::min<std::size_t>(triangles, path_tracer::kMaxTreeletNodes));
+  const auto nodes_of_tree =
+      static_cast<int>(std::min<std::size_t>(triangles, path_tracer::kMaxTreeletNodes));
   return std::clamp(1 + left / program.tree.layout.node_bytes(), 1, std::max(1, nodes_of_tree));
+}
+
+void complete_traversal(std::size_t triangles, const model::ChipConfig& chip, ProgramConfig& program) {
+  if (!program.uses_tree() || program.tree.resident_nodes != kAsManyAsFit) return;
+  program.tree.resident_nodes = resident_nodes_that_fit(triangles, program, chip);
 }
 
 }  // namespace testbench

@@ -20,9 +20,9 @@ struct TraversalCosts {
   double tree = 0;  ///< with refill
 };
 
-/// Brute force: what the intersect kernel issues for a triangle. With a tree: its PIO requests or its kernels,
-/// whichever takes longer, with as many leaves, treelets and nodes a ray as the generated scenes showed
-/// (README, "Real scenes").
+/// Brute force: what the intersect kernel issues for a triangle. With a tree: its PIO requests or its
+/// kernels, whichever takes longer, with as many leaves, treelets and nodes a ray as the generated scenes
+/// showed (README, "Real scenes").
 TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
                                   const model::ChipConfig& chip);
 
@@ -30,9 +30,16 @@ TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::Tree
 TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
                                  const model::ChipConfig& chip);
 
-/// As many nodes as the SRAM has room for beside everything else, at least one and no more than a tree of so many
-/// triangles has.
+/// As many nodes as the SRAM has room for beside everything else, at least one and no more than a tree of so
+/// many triangles has.
 int resident_nodes_that_fit(std::size_t triangles, const path_tracer::ProgramConfig& program,
                             const model::ChipConfig& chip);
+
+/// For TreeShape::resident_nodes, until the scene is known.
+inline constexpr int kAsManyAsFit = 0;
+
+/// Puts a number in the place of kAsManyAsFit.
+void complete_traversal(std::size_t triangles, const model::ChipConfig& chip,
+                        path_tracer::ProgramConfig& program);
 
 }  // namespace testbench

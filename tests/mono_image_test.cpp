@@ -1,5 +1,5 @@
-#include "testbench/faces.hpp"
 #include "testbench/mono_image.hpp"
+#include "testbench/faces.hpp"
 
 #include <gtest/gtest.h>
 

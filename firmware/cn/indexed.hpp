@@ -1,10 +1,11 @@
 #pragma once
 
-#include "firmware/cn/poly_memory.hpp"
 #include "firmware/cn/poly.hpp"
+#include "firmware/cn/poly_memory.hpp"
 
 /// Poly memory through poly pointers: each PE reads or writes at an address of its own in its own SRAM. It
-/// costs what an access at the same address in all PEs costs; computing addresses is charged as it is written.
+/// costs what an access at the same address in all PEs costs; computing addresses is charged as it is
+/// written.
 namespace cn {
 
 namespace indexed_detail {
@@ -113,8 +114,8 @@ class IndexedRecord {
         pointers_.gather(std::size_t(unsigned(offset_bytes) / 8) * unsigned(strip.num_pes))));
   }
 
-  /// Of two variables that were loaded the one that each PE's condition chooses: on the chip the condition makes
-  /// part of the address, so that each is read where it is wanted and no instruction chooses.
+  /// Of two variables that were loaded the one that each PE's condition chooses: on the chip the condition
+  /// makes part of the address, so that each is read where it is wanted and no instruction chooses.
   template <class T>
   static poly<T> chosen(const mask& condition, const poly<T>& if_set, const poly<T>& otherwise) {
     return poly<T>(select_lanes(condition.lanes(), if_set.lanes(), otherwise.lanes()));

@@ -132,8 +132,8 @@ class IssueTree {
   Node& root() { return root_; }
   const Node& root() const { return root_; }
 
-  /// The node for an iteration of a region of `parent`; iterations come one after the other. Stays where it is
-  /// until clear().
+  /// The node for an iteration of a region of `parent`; iterations come one after the other. Stays where it
+  /// is until clear().
   Node& node(Node& parent, std::size_t region, std::size_t iteration) {
     if (parent.regions.size() <= region) parent.regions.resize(region + 1);
     Region& iterations = parent.regions[region];
@@ -141,7 +141,8 @@ class IssueTree {
     return *iterations[iteration];
   }
 
-  /// Ready for the next kernel. Nodes are kept and used again: a kernel has dozens, and there are many kernels.
+  /// Ready for the next kernel. Nodes are kept and used again: a kernel has dozens, and there are many
+  /// kernels.
   void clear() {
     root_.clear();
     used_ = 0;

@@ -50,8 +50,8 @@ inline void observe_sram(Access access, PolySpan bytes) {
       strip.observer->touches_poly(access, bytes, strip.first_pe, mask_bits(strip.enabled));
 }
 
-/// From here on instructions belong to `node`. Only the first strip to pass a node counts its instructions; the
-/// others leave behind what nobody reads.
+/// From here on instructions belong to `node`. Only the first strip to pass a node counts its instructions;
+/// the others leave behind what nobody reads.
 inline void enter_node(IssueTree::Node& node) {
   strip.node = &node;
   if (!node.reached) strip.issued = StripCounts{};

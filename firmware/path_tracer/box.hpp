@@ -3,9 +3,9 @@
 #include "firmware/cn/math.hpp"
 #include "firmware/cn/vec3.hpp"
 
-/// Rays against boxes aligned to the axes. Rounded operations keep order: with each step rounded the same way,
-/// a ray that meets a box meets every box around it, and enters that one no later. So the tree needs no margins
-/// beside those of its leaves (triangle_record.hpp).
+/// Rays against boxes aligned to the axes. Rounded operations keep order: with each step rounded the same
+/// way, a ray that meets a box meets every box around it, and enters that one no later. So the tree needs no
+/// margins beside those of its leaves (triangle_record.hpp).
 namespace path_tracer {
 
 using cn::mask;

@@ -132,6 +132,16 @@ void append(const AppendArguments& arguments) {
   cn::keep(finished, *arguments.finished);
 }
 
+/// number * stride modulo the number of pixels: products below 2^53 are exact, and the quotient by
+/// multiplication is at most one off.
+poly<std::int32_t> strided_pixel(const poly<std::int32_t>& number, int stride, std::int32_t pixels) {
+  const poly<double> place = cn::convert<double>(number) * double(stride);
+  const poly<double> rounds = cn::convert<double>(cn::convert<std::int32_t>(place * (1.0 / pixels)));
+  const poly<double> rest = place - rounds * double(pixels);
+  const poly<double> above = cn::select(rest < 0.0, rest + double(pixels), rest);
+  return cn::convert<std::int32_t>(cn::select(above >= double(pixels), above - double(pixels), above));
+}
+
 void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_t>& number) {
   const std::int32_t pixels = arguments.camera->width * arguments.camera->height;
   poly<std::int32_t> pixel = number + arguments.next_pixel;
@@ -141,6 +151,7 @@ void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_
                    pixel -= pixels;
                    sample += 1;
                  });
+  if (arguments.pixel_stride != 1) pixel = strided_pixel(pixel, arguments.pixel_stride, pixels);
   const UniformPair in_pixel = camera_numbers(arguments.sampler, arguments.seed, pixel, sample);
   const CameraRay ray = sample_camera(*arguments.camera, pixel, in_pixel.u, in_pixel.v);
   arguments.ray.set(&RayRecord::origin, ray.origin);

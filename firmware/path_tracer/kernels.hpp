@@ -80,6 +80,7 @@ struct ReplaceArguments {
   Sampler sampler = Sampler::philox;
   std::uint64_t seed = 0;
   std::int32_t next_pixel = 0;  ///< of the camera ray with number 0
+  int pixel_stride = 1;
   std::int32_t next_sample = 0;
   std::int32_t remaining = 0;  ///< camera rays there still are, at most the number of PEs
   PolyPointer<PathRecord> next_path;

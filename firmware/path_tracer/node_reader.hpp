@@ -22,8 +22,8 @@ inline const poly<double>& component(const vec3<poly<double>>& v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// The coordinates of the four children in the components of their boxes (lower x, y, z, upper x, y, z), in double
-/// precision whatever the format; the same numbers as the host's decode_box() makes of them.
+/// The coordinates of the four children in the components of their boxes (lower x, y, z, upper x, y, z), in
+/// double precision whatever the format; the same numbers as the host's decode_box() makes of them.
 template <NodeFormat format>
 class NodeReader;
 
@@ -147,12 +147,13 @@ class NodeVisitor {
 
  private:
   template <std::size_t... axis>
-  void for_each_axis(const NodeReader<format>& reader, poly4<double> (&entry)[kAxes], poly4<double> (&exit)[kAxes],
-                     std::index_sequence<axis...>) const {
+  void for_each_axis(const NodeReader<format>& reader, poly4<double> (&entry)[kAxes],
+                     poly4<double> (&exit)[kAxes], std::index_sequence<axis...>) const {
     (meet_planes(reader, int(axis), entry[axis], exit[axis]), ...);
   }
 
-  void meet_planes(const NodeReader<format>& reader, int axis, poly4<double>& entry, poly4<double>& exit) const {
+  void meet_planes(const NodeReader<format>& reader, int axis, poly4<double>& entry,
+                   poly4<double>& exit) const {
     const poly4<double> origin = same4(component(ray_.origin(), axis));
     const poly4<double> scale = same4(component(ray_.minus_inverse(), axis));
     const poly4<double> lower = reader.row(axis);

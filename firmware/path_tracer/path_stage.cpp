@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 
 #include "firmware/path_tracer/stages.hpp"
 
@@ -17,7 +18,14 @@ PathStage::PathStage(const StageContext& context, const Work& work)
                      return camera.width * camera.height;
                    }()),
       number_{context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes},
-      segments_(std::size_t(context.config.bin_blocks) * std::size_t(context.machine.num_pes())) {}
+      segments_(std::size_t(context.config.bin_blocks) * std::size_t(context.machine.num_pes())) {
+  const int pixels = camera_rays_.pixels();
+  const int stride = context.config.pixel_stride;
+  if (pixels > 1 && std::gcd(stride, pixels) != 1)
+    throw ProgramError("pixel stride: found " + std::to_string(stride) +
+                       ", which has a divisor in common with the " + std::to_string(pixels) +
+                       " pixels of the film; allowed is any number without");
+}
 
 PathStage::Loads PathStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
@@ -129,6 +137,7 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   arguments.seed = context_.config.seed;
   arguments.next_pixel = camera_rays_.next_pixel();
   arguments.next_sample = camera_rays_.next_sample();
+  arguments.pixel_stride = context_.config.pixel_stride % camera_rays_.pixels();
   arguments.remaining = started;
   arguments.next_path = to.path;
   arguments.ray = PolyPointer<RayRecord>(to.ray.span().offset_bytes);

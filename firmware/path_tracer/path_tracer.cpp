@@ -134,8 +134,8 @@ void PathTracer::fill_bins() {
   plan_pass();
 }
 
-/// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before. With a
-/// tree, how many steps that bin takes shows while they run.
+/// The rest of a pass, once it is known which blocks are alive; the ray bin's steps are planned before. With
+/// a tree, how many steps that bin takes shows while they run.
 void PathTracer::plan_pass() {
   count_rays();
   path_steps_left_ = static_cast<int>(live_blocks_.size());
@@ -190,8 +190,8 @@ bool PathTracer::can_load(const Step& step) const {
   });
 }
 
-/// How many steps may be loaded at a time, the one to be processed included. What is prepared is loaded so much
-/// earlier that its second loads, too, begin n steps ahead.
+/// How many steps may be loaded at a time, the one to be processed included. What is prepared is loaded so
+/// much earlier that its second loads, too, begin n steps ahead.
 std::size_t PathTracer::look_ahead(const Step& step) const {
   const int buffers = config_.load_buffers();
   return static_cast<std::size_t>(step.stage->prepares() ? 2 * buffers - 1 : buffers);

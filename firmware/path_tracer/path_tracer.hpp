@@ -44,9 +44,9 @@ class PathTracer {
   struct Step {
     Stage* stage;
     int block;
-    std::uint64_t number = 0;   ///< in the order of loading, which is that of processing
-    bool just_loaded = true;    ///< its loads were begun after the last step was processed
-    bool is_prepared = false;   ///< Stage::prepare()
+    std::uint64_t number = 0;  ///< in the order of loading, which is that of processing
+    bool just_loaded = true;   ///< its loads were begun after the last step was processed
+    bool is_prepared = false;  ///< Stage::prepare()
   };
   using Steps = std::deque<Step>;
 

@@ -40,7 +40,8 @@ void validate(const TreeShape& tree) {
   range("resident nodes", tree.resident_nodes, 1, kMaxTreeletNodes);
   range("entries of the short stack", tree.stack_entries, 0, kMaxStackEntries);
   require((tree.stack_entries & (tree.stack_entries - 1)) == 0, "entries of the short stack",
-          std::to_string(tree.stack_entries), "0 or a power of two up to " + std::to_string(kMaxStackEntries));
+          std::to_string(tree.stack_entries),
+          "0 or a power of two up to " + std::to_string(kMaxStackEntries));
 }
 
 void PassCounts::add(std::uint64_t count) {
@@ -70,6 +71,7 @@ void validate(const ProgramConfig& config) {
               std::to_string(kMaxSlotVertices));
   require(config.roulette_start >= 0, "roulette start", std::to_string(config.roulette_start),
           "0 or more segments");
+  require(config.pixel_stride >= 1, "pixel stride", std::to_string(config.pixel_stride), "1 or more");
   if (config.uses_tree()) validate(config.tree);
   require(config.max_survival > 0 && config.max_survival < 1, "largest survival probability",
           std::to_string(config.max_survival), "above 0 and below 1");
@@ -89,7 +91,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.camera = memory.take<CameraRecord>("camera", 1);
   // Leaves are loaded in one size, so that the last one reaches beyond the last triangle.
   const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
-  layout.triangles = memory.take<TriangleRecord>("triangles", std::uint64_t(scene.triangles + behind_triangles));
+  layout.triangles =
+      memory.take<TriangleRecord>("triangles", std::uint64_t(scene.triangles + behind_triangles));
   layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles));
   layout.lights = memory.take<LightRecord>("lights", std::uint64_t(scene.lights));
   layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(scene.lights));
@@ -107,8 +110,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
         "traversal bin", std::uint64_t(num_pes) * std::uint64_t(traversal_bin_blocks(config)) *
                              std::uint64_t(tree.record_bytes()) / 8);
   layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots);
-  if (config.uses_tree())
-    layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
+  if (config.uses_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
   layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots);
   layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots);
   layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);

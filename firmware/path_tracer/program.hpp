@@ -62,6 +62,9 @@ struct ProgramConfig {
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   std::uint64_t seed = 1;
+  /// Pixels from one camera ray to the next, round and round the film; without a common divisor with their
+  /// number. The image is the same; what changes is how far rays of one block are from each other.
+  int pixel_stride = 1;
   Traversal traversal = Traversal::brute_force;
   TreeShape tree;
 
@@ -166,8 +169,9 @@ class PassCounts {
 struct TraversalCounts {
   std::uint64_t leaf_loads = 0;     ///< rays that loaded a leaf
   std::uint64_t treelet_loads = 0;  ///< rays that loaded a treelet
-  std::vector<std::uint64_t> rays;   ///< by pass or turn, from the one that takes rays out of the ray bin
-  std::vector<std::uint64_t> lanes;  ///< by pass: PEs of the blocks that they filled; with refill all as pass 0
+  std::vector<std::uint64_t> rays;  ///< by pass or turn, from the one that takes rays out of the ray bin
+  std::vector<std::uint64_t>
+      lanes;  ///< by pass: PEs of the blocks that they filled; with refill all as pass 0
   /// Until 95 % of the rays of a bin were through:
   std::uint64_t rays_before_tail = 0;
   std::uint64_t lanes_before_tail = 0;

@@ -7,7 +7,8 @@ namespace path_tracer {
 RefillStage::RefillStage(const StageContext& context, TreeContext& tree)
     : TreeStage(context, tree),
       groups_(std::size_t(context.config.load_buffers())),
-      number_{context.machine.poly_memory().allocate("numbers of idle PEs", sizeof(std::int32_t)).offset_bytes},
+      number_{
+          context.machine.poly_memory().allocate("numbers of idle PEs", sizeof(std::int32_t)).offset_bytes},
       least_idle_(context.config.traversal == Traversal::lock_step ? num_pes() : 1) {
   const int bytes = tree.tree.shape.record_bytes();
   for (std::size_t i = 0; i < groups_.size(); ++i) {
@@ -41,7 +42,8 @@ void RefillStage::load_rays(std::uint64_t step, Group& group) {
   arguments.place = to.ray_place;
   arguments.takes = &group.fresh;
   context_.machine.run(kernels_.take_rays, arguments, idle_pes);
-  context_.loads.copy_m2p(step, kNoBlock, to.ray.span(), context_.machine.places_in(to.ray_place), group.fresh);
+  context_.loads.copy_m2p(step, kNoBlock, to.ray.span(), context_.machine.places_in(to.ray_place),
+                          group.fresh);
   queue.take(count);
 }
 

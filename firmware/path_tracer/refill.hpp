@@ -2,14 +2,14 @@
 
 #include "firmware/path_tracer/tree_stage.hpp"
 
-/// Another circular buffer than the paper's for the intersection step: rays stay in the SRAM of their PE until
-/// they are through, and "the PEs with unsuccessful task can load more data" (section 4). What n-buffering wants
-/// besides the rays that are processed are others whose loads are under way: n + 1 groups of a ray a PE take
-/// turns.
+/// Another circular buffer than the paper's for the intersection step: rays stay in the SRAM of their PE
+/// until they are through, and "the PEs with unsuccessful task can load more data" (section 4). What
+/// n-buffering wants besides the rays that are processed are others whose loads are under way: n + 1 groups
+/// of a ray a PE take turns.
 namespace path_tracer {
 
-/// A turn of a group: what its rays want of the tree is loaded, new rays are loaded for idle PEs; then all go on
-/// as far as they can. Its blocks are the groups.
+/// A turn of a group: what its rays want of the tree is loaded, new rays are loaded for idle PEs; then all go
+/// on as far as they can. Its blocks are the groups.
 class RefillStage : public TreeStage {
  public:
   RefillStage(const StageContext& context, TreeContext& tree);
@@ -25,9 +25,9 @@ class RefillStage : public TreeStage {
  private:
   struct Group {
     PolyPointer<TraversalRecord> record;
-    LaneMask alive;   ///< PEs with a ray that goes on
+    LaneMask alive;    ///< PEs with a ray that goes on
     int going_on = 0;  ///< how many those are
-    LaneMask fresh;   ///< PEs whose ray is being loaded
+    LaneMask fresh;    ///< PEs whose ray is being loaded
     Needs needs;
     std::vector<std::size_t> passes;  ///< by PE, how many turns its ray has had; for counts only
   };

@@ -9,8 +9,7 @@ int Stage::ray_bytes(const ProgramConfig& config) {
 }
 
 PolyPointer<QueuedRay> Stage::take_ray(BufferCutter& cutter) const {
-  if (context_.queue == nullptr)
-    return PolyPointer<QueuedRay>(cutter.take<RayRecord>().span().offset_bytes);
+  if (context_.queue == nullptr) return PolyPointer<QueuedRay>(cutter.take<RayRecord>().span().offset_bytes);
   const PolyPointer<QueuedRay> ray = cutter.take<QueuedRay>();
   cutter.take_place();
   return ray;
@@ -18,7 +17,8 @@ PolyPointer<QueuedRay> Stage::take_ray(BufferCutter& cutter) const {
 
 void Stage::save_rays(std::uint64_t step, int block, PolyPointer<QueuedRay> from, const LaneMask& with_ray) {
   if (context_.queue == nullptr) {
-    save_block(step, block, context_.layout.ray_bin, PolyPointer<RayRecord>(from.span().offset_bytes), with_ray);
+    save_block(step, block, context_.layout.ray_bin, PolyPointer<RayRecord>(from.span().offset_bytes),
+               with_ray);
   } else {
     context_.queue->enqueue(context_.saves, step, from, bin_block(block).light_place, first_slot(block),
                             with_ray);

@@ -64,6 +64,7 @@ class CameraRays {
     return first_sample_ + static_cast<std::int32_t>(next_ / std::uint64_t(pixels_));
   }
   std::uint64_t remaining() const { return total_ - next_; }
+  int pixels() const { return pixels_; }
   void issue(std::uint64_t count) { next_ += count; }
   std::uint64_t issued() const { return next_; }
 

@@ -4,8 +4,8 @@
 
 namespace path_tracer {
 
-/// From the load, which is begun two steps of n ahead since a ray's leaf is known only when the ray is there, to
-/// the end of the save.
+/// From the load, which is begun two steps of n ahead since a ray's leaf is known only when the ray is there,
+/// to the end of the save.
 int TemporaryBinContext::record_buffers(const ProgramConfig& config) {
   return 2 * config.load_buffers() - 1 + config.save_buffers() - 1;
 }
@@ -15,7 +15,8 @@ TemporaryBinContext::TemporaryBinContext(cn::Machine& machine, const ProgramConf
     : records(machine, "traversal record",
               {record_buffers(config), config.tree.record_bytes() + int{sizeof(MonoAddress)}, false}),
       bin(layout, config, machine.num_pes()),
-      number{machine.poly_memory().allocate("numbers of rays that go on", sizeof(std::int32_t)).offset_bytes} {}
+      number{
+          machine.poly_memory().allocate("numbers of rays that go on", sizeof(std::int32_t)).offset_bytes} {}
 
 PolyField<MonoAddress> TemporaryBinStage::record_to(std::uint64_t step) const {
   return {rays_.records.buffer(step).offset_bytes + rays_.bin.record_bytes()};
@@ -78,7 +79,8 @@ void TraverseStage::load(std::uint64_t step, int block) {
   records.wait_until(rays_.bin.last_writer(block));
   const int bytes = rays_.bin.record_bytes();
   records.copy_m2p(step, kNoBlock, {records.buffer(step).offset_bytes, bytes},
-                   cn::MonoPlaces::array(rays_.bin.address_of(block), std::uint64_t(bytes)), state(step).rays);
+                   cn::MonoPlaces::array(rays_.bin.address_of(block), std::uint64_t(bytes)),
+                   state(step).rays);
   if (!context_.config.buffers_loads()) records.wait(step);
 }
 

@@ -4,8 +4,8 @@
 #include "firmware/path_tracer/tree_stage.hpp"
 
 /// The circular buffer within the intersection step that the paper's section 5 sketches: rays wait in a
-/// temporary bin, each with the leaf that it is to be tested against and the piece of the tree that it needs to
-/// find the next one.
+/// temporary bin, each with the leaf that it is to be tested against and the piece of the tree that it needs
+/// to find the next one.
 namespace path_tracer {
 
 /// The rays in SRAM and the bin that they go round.

@@ -85,9 +85,7 @@ class Traveller {
                                                 poly<std::int32_t>(tree_.treelet_offset));
     return index * tree_.shape.layout.node_bytes() + start;
   }
-  PolyAddress stack_address(const poly<std::int32_t>& place) const {
-    return (place << 3) + stack_offset_;
-  }
+  PolyAddress stack_address(const poly<std::int32_t>& place) const { return (place << 3) + stack_offset_; }
 
   /// The child of `reference` is next.
   void enter(const poly<std::uint32_t>& reference) {

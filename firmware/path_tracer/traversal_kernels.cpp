@@ -100,10 +100,10 @@ poly<std::int32_t> next_node(const LocateArguments& arguments, const poly<std::i
           (place << 3) + (record.span().offset_bytes + int{sizeof(TraversalRecord)})));
       constexpr std::uint32_t kCount = PackedReference::kCountMask << PackedReference::kFirstBits;
       const mask is_node = (reference & poly<std::uint32_t>(kCount)) == poly<std::uint32_t>(0u);
-      next = cn::select(is_node,
-                        cn::reinterpret_word<std::int32_t>(
-                            reference & poly<std::uint32_t>(PackedReference::kFirstMask)),
-                        poly<std::int32_t>(kTraversalOver));
+      next = cn::select(
+          is_node,
+          cn::reinterpret_word<std::int32_t>(reference & poly<std::uint32_t>(PackedReference::kFirstMask)),
+          poly<std::int32_t>(kTraversalOver));
     });
   });
   return next;

@@ -67,7 +67,7 @@ struct TraverseArguments {
   PolyPointer<TriangleRecord> leaf;
   PolyField<std::int32_t> treelet;
   TreeInSram tree;
-  double reach = 0;  ///< of the scene (triangle_record.hpp)
+  double reach = 0;                       ///< of the scene (triangle_record.hpp)
   const LaneMask* loaded_leaf = nullptr;  ///< nothing when no PE has one
   LaneMask* alive = nullptr;
 };

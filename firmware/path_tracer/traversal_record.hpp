@@ -13,10 +13,11 @@ inline constexpr std::int32_t kTraversalOver = -2;
 /// it lie the entries of its short stack, 8 bytes each.
 ///
 /// Children of a node are visited in the order of their entries. `trail` counts for each level how many the
-/// path from the root has left behind, 3 bits a level, and `more` has a bit for each level with siblings still
-/// to come. The short stack holds the latest of those; when it has lost the older ones, the ray starts again at
-/// the root and follows the trail (Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010; Vaidyanathan,
-/// Woop, Benthin, "Wide BVH Traversal with a Short Stack", HPG 2019). So no depth and no stack loses a hit.
+/// path from the root has left behind, 3 bits a level, and `more` has a bit for each level with siblings
+/// still to come. The short stack holds the latest of those; when it has lost the older ones, the ray starts
+/// again at the root and follows the trail (Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010;
+/// Vaidyanathan, Woop, Benthin, "Wide BVH Traversal with a Short Stack", HPG 2019). So no depth and no stack
+/// loses a hit.
 struct TraversalRecord {
   vec3<double> origin{};
   vec3<double> direction{};
@@ -36,8 +37,8 @@ struct TraversalRecord {
   std::int32_t stack = 0;  ///< place of the next entry, 16 bits, and above that how many there are
 };
 
-/// An entry of the short stack: the upper half of the double at which its box is entered, and the reference of
-/// the child, flagged when it is the last of its siblings.
+/// An entry of the short stack: the upper half of the double at which its box is entered, and the reference
+/// of the child, flagged when it is the last of its siblings.
 inline constexpr int kStackEntryBytes = 8;
 inline constexpr std::uint64_t kNoEntry = ~std::uint64_t{0};
 
@@ -55,14 +56,16 @@ inline constexpr int kLightRun = 2;
 /// The tree as kernels see it.
 struct TreeShape {
   NodeLayout layout{NodeFormat::fp32, kTraversalWidth};
-  int resident_nodes = 1;  ///< slots [0, resident_nodes) stay in every PE's SRAM
-  int treelet_nodes = 1;   ///< further slots are loaded so many at a time
+  int resident_nodes = 8;  ///< slots [0, resident_nodes) stay in every PE's SRAM
+  int treelet_nodes = 4;   ///< further slots are loaded so many at a time
   int leaf_triangles = 2;  ///< at most
   int stack_entries = 8;   ///< a power of two, or 0
 
   int resident_bytes() const { return resident_nodes * layout.node_bytes(); }
   int treelet_bytes() const { return treelet_nodes * layout.node_bytes(); }
-  int record_bytes() const { return static_cast<int>(sizeof(TraversalRecord)) + stack_entries * kStackEntryBytes; }
+  int record_bytes() const {
+    return static_cast<int>(sizeof(TraversalRecord)) + stack_entries * kStackEntryBytes;
+  }
   int leaf_records() const { return leaf_triangles > kLightRun ? leaf_triangles : kLightRun; }
 };
 

@@ -111,7 +111,8 @@ void TreeStage::finish(std::uint64_t step, PolyPointer<TraversalRecord> record, 
 void TreeStage::save_hits(std::uint64_t step) {
   if (!finished_.any()) return;
   const Hits from = hits(step);
-  context_.saves.copy_p2m(step, kNoBlock, context_.machine.places_in(from.hit_to), from.hit.span(), finished_);
+  context_.saves.copy_p2m(step, kNoBlock, context_.machine.places_in(from.hit_to), from.hit.span(),
+                          finished_);
   context_.saves.copy_p2m(step, kNoBlock, context_.machine.places_in(from.surface_place_to),
                           {from.surface_place.offset_bytes, sizeof(MonoAddress)}, finished_);
   tree_.last_hit_step = step;

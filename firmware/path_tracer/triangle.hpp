@@ -103,7 +103,8 @@ inline const Direction3& as_poly(const Direction3& v) {
 
 /// The box's own test for a hit of which that is not certain.
 template <class Triangle>
-mask meets_padded_box(const RayOperands& ray, double reach, const Crossing& crossing, const Triangle& triangle) {
+mask meets_padded_box(const RayOperands& ray, double reach, const Crossing& crossing,
+                      const Triangle& triangle) {
   // The power of two that the edges are scaled by: edge2 x edge1 has it squared, `back` once.
   const Direction3 edge1 = as_poly(triangle.edge1);
   const Direction3 edge2 = as_poly(triangle.edge2);
@@ -130,8 +131,8 @@ mask comes_before(const Crossing& crossing, const poly<std::int32_t>& number, co
   return (left < right) | ((left == right) & (left_error < right_error)) | (same & (number < nearest.number));
 }
 
-/// The search without what rounding may do: of the lanes that it returns, two crossings were too close to tell
-/// which is nearer.
+/// The search without what rounding may do: of the lanes that it returns, two crossings were too close to
+/// tell which is nearer.
 template <class Found, class Triangles>
 mask search_fast(const RayOperands& ray, const Triangles& triangles, Found& nearest) {
   mask tied(cn::mask_from_bits(0));
@@ -162,9 +163,9 @@ void search_exactly(const RayOperands& ray, double reach, const Triangles& trian
   }
 }
 
-/// Puts the nearest of `triangles` in the place of `nearest` where it comes before. A ray ignores the face that
-/// it leaves. The exact search runs only for a PE that needs it: where the fast one met no tie and its result
-/// is certain, no other crossing can come before that.
+/// Puts the nearest of `triangles` in the place of `nearest` where it comes before. A ray ignores the face
+/// that it leaves. The exact search runs only for a PE that needs it: where the fast one met no tie and its
+/// result is certain, no other crossing can come before that.
 template <class Found, class Triangles>
 void search(const RayOperands& ray, double reach, const Triangles& triangles, Found& nearest) {
   const Found start = nearest;

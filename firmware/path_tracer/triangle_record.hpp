@@ -5,19 +5,19 @@
 
 #include "firmware/path_tracer/records.hpp"
 
-/// Which box a triangle's hits lie in for certain, so that a tree of boxes finds the hits that a test of every
-/// triangle finds, to the last bit.
+/// Which box a triangle's hits lie in for certain, so that a tree of boxes finds the hits that a test of
+/// every triangle finds, to the last bit.
 ///
 /// The test (triangle.hpp) rounds. A ray that passes a triangle at the distance of a rounding error may count
-/// as a hit, and one that grazes its plane may count as a hit far from it. So boxes are padded, and a hit whose
-/// determinant is so small that rounding may have moved it out of the padded box must pass the box's own test
-/// (box.hpp), which no box around that one can fail. All others pass it anyway:
+/// as a hit, and one that grazes its plane may count as a hit far from it. So boxes are padded, and a hit
+/// whose determinant is so small that rounding may have moved it out of the padded box must pass the box's
+/// own test (box.hpp), which no box around that one can fail. All others pass it anyway:
 ///
 /// With e = 2^-53, `reach` at least the length of any way from a ray's origin to a vertex, and s the size of
 /// the determinant, the rounding of the test moves a hit within the triangle by less than
-/// 36 e |direction| reach |edge1| |edge2| / s, and along the ray by less than 20 of the same. The test of boxes
-/// rounds by 16 e reach at most. So where s / |direction| is at least 64 e reach |edge1| |edge2| / padding, with
-/// a padding of at least 2^-40 reach, the padded box is met, and not behind the hit.
+/// 36 e |direction| reach |edge1| |edge2| / s, and along the ray by less than 20 of the same. The test of
+/// boxes rounds by 16 e reach at most. So where s / |direction| is at least 64 e reach |edge1| |edge2| /
+/// padding, with a padding of at least 2^-40 reach, the padded box is met, and not behind the hit.
 namespace path_tracer {
 
 template <class Number>
@@ -51,9 +51,9 @@ PaddedBox<Number> padded_box(const vec3<Number>& vertex, const vec3<Number>& edg
   return {lower - paddings, upper + paddings, padding};
 }
 
-/// The power of two that edges and back are multiplied by: with it a hit is certain to lie in the padded box if
-/// the determinant's size is at least the sum of the direction's components. The test of a triangle is the same
-/// at every scale, and its products then stay far from what a double cannot hold.
+/// The power of two that edges and back are multiplied by: with it a hit is certain to lie in the padded box
+/// if the determinant's size is at least the sum of the direction's components. The test of a triangle is the
+/// same at every scale, and its products then stay far from what a double cannot hold.
 inline double record_scale(const vec3<double>& vertex, const vec3<double>& edge1, const vec3<double>& edge2,
                            double reach) {
   const auto length = [](const vec3<double>& v) {
@@ -61,7 +61,8 @@ inline double record_scale(const vec3<double>& vertex, const vec3<double>& edge1
                       static_cast<long double>(v.z));
   };
   const double padding = padded_box(vertex, edge1, edge2, reach).padding;
-  const long double least = kRoundings * reach * length(edge1) * length(edge2) / static_cast<long double>(padding);
+  const long double least =
+      kRoundings * reach * length(edge1) * length(edge2) / static_cast<long double>(padding);
   if (!(least > 0) || !std::isfinite(least)) return 1.0;
   return std::scalbn(1.0, std::clamp(-std::ilogb(least) - 1, -1000, 1000));
 }

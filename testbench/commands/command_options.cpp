@@ -13,6 +13,7 @@
 #include "testbench/program_names.hpp"
 #include "testbench/render.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/traversal_choice.hpp"
 
 namespace testbench {
 namespace {
@@ -149,19 +150,21 @@ void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program
       ->capture_default_str();
 }
 
-void add_traversal_options(CLI::App& command, path_tracer::ProgramConfig& program) {
+void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& program) {
   using path_tracer::NodeFormat;
   using path_tracer::Traversal;
   command
-      .add_option("--traversal", program.traversal,
-                  "How rays find triangles: brute_force, temporary_bin, refill or lock_step")
+      .add_option(
+          "--traversal", chosen_,
+          "How rays find triangles: brute_force, temporary_bin, refill or lock_step; by default what the "
+          "scene and the chip make fastest")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Traversal>{{"brute_force", Traversal::brute_force},
                                            {"temporary_bin", Traversal::temporary_bin},
                                            {"refill", Traversal::refill},
-                                           {"lock_step", Traversal::lock_step}}))
-      ->default_str(traversal_name(program.traversal));
+                                           {"lock_step", Traversal::lock_step}}));
   path_tracer::TreeShape& tree = program.tree;
+  tree.resident_nodes = kAsManyAsFit;
   command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")
       ->transform(CLI::CheckedTransformer(std::map<std::string, NodeFormat>{
           {"fp64", NodeFormat::fp64}, {"fp32", NodeFormat::fp32}, {"quantised8", NodeFormat::quantised8}}))
@@ -171,9 +174,19 @@ void add_traversal_options(CLI::App& command, path_tracer::ProgramConfig& progra
   command.add_option("--treelet-nodes", tree.treelet_nodes, "Nodes that a PE loads at a time")
       ->capture_default_str();
   command.add_option("--resident-nodes", tree.resident_nodes, "Nodes around the root that every PE keeps")
+      ->default_str("as many as fit");
+  command
+      .add_option("--stack-entries", tree.stack_entries,
+                  "Entries of a ray's short stack: 0 or a power of two")
       ->capture_default_str();
-  command.add_option("--stack-entries", tree.stack_entries, "Entries of a ray's short stack: 0 or a power of two")
-      ->capture_default_str();
+}
+
+std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig& chip,
+                                    path_tracer::ProgramConfig& program) const {
+  const TraversalChoice choice = choose_traversal(scene.triangles.size(), program.tree, chip);
+  program.traversal = chosen_.value_or(choice.traversal);
+  complete_traversal(scene.triangles.size(), chip, program);
+  return chosen_ ? "" : choice.reason;
 }
 
 }  // namespace testbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,7 +81,17 @@ Scene load_scene_for_film(const std::string& path, const std::string& size);
 /// are the values in `program`.
 void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program);
 
-/// How rays find triangles: --traversal and what the tree looks like. The defaults are the values in `program`.
-void add_traversal_options(CLI::App& command, path_tracer::ProgramConfig& program);
+/// How rays find triangles: --traversal and what the tree looks like.
+class TraversalOption {
+ public:
+  /// The tree's defaults are those in `program`, which is also where its options go.
+  void add_to(CLI::App& command, path_tracer::ProgramConfig& program);
+  /// Settles what depends on the scene. Returns why, in a line, or nothing when the user has chosen.
+  std::string choose(const Scene& scene, const model::ChipConfig& chip,
+                     path_tracer::ProgramConfig& program) const;
+
+ private:
+  std::optional<path_tracer::Traversal> chosen_;
+};
 
 }  // namespace testbench

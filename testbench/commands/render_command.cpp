@@ -27,6 +27,7 @@ struct RenderCommand {
   ChipOptions chip;
   TimingOption timing;
   LevelOption level;
+  TraversalOption traversal;
   std::string program = "full";
   std::string buffer = "both";
   std::string shadow_rays = "facing";
@@ -97,6 +98,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
     if (ranks.is_first()) require_writable_outputs();
     loaded = load_scene_for_film(scene, size);
+    request.traversal_reason = traversal.choose(*loaded, request.options.chip, request.options.program);
   } catch (const InputError& wrong) {
     error = wrong.what();
   }
@@ -134,10 +136,11 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
 void RenderCommand::run() {
   Ranks ranks;
   if (!ranks.alone()) return run_on_ranks(ranks);
-  const RenderRequest request = make_request();
+  RenderRequest request = make_request();
   require_writable_outputs();
   require_writable(request.options.observation, request.options.chip);
   const Scene loaded = load_scene_for_film(scene, size);
+  request.traversal_reason = traversal.choose(loaded, request.options.chip, request.options.program);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
     ProgressBar bar(native ? "render (native)" : "render");
@@ -179,8 +182,13 @@ void add_firmware_options(CLI::App& command, RenderCommand& state) {
       ->capture_default_str();
   command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")
       ->capture_default_str();
+  command
+      .add_option(
+          "--pixel-stride", program.pixel_stride,
+          "Pixels from one camera ray to the next: 1 in order, more to shuffle; the image is the same")
+      ->capture_default_str();
   add_sampling_options(command, program);
-  add_traversal_options(command, program);
+  state.traversal.add_to(command, program);
 }
 
 }  // namespace

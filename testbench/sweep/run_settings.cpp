@@ -215,6 +215,7 @@ std::vector<RunParameter> declare() {
           firmware_integer<&ProgramConfig::roulette_start, 0, 1 << 20>("roulette_start"),
           max_survival(),
           seed(),
+          firmware_integer<&ProgramConfig::pixel_stride, 1, 1 << 30>("pixel_stride"),
           firmware_choice<&ProgramConfig::traversal, traversal_names>("traversal"),
           node_format(),
           tree_integer<&TreeShape::leaf_triangles, 1, path_tracer::kMaxLeafTriangles>("leaf_triangles"),

@@ -110,7 +110,7 @@ TEST(BrokenFirmware, KernelsThatReportNothingAreRefused) {
   testbench::NativeMachine machine(8, 6144, 1 << 20);
   model::HazardChecker checker(machine);
   machine.set_access_observer(&checker);
-  const auto layout = path_tracer::make_layout(12, 12, 8, config);
+  const auto layout = path_tracer::make_layout({12, 12}, 8, config);
   const path_tracer::CameraRecord camera{{}, {}, {}, {}, 4, 4};
   machine.write_mono(layout.camera, camera);
   expect_parts(test_support::fault_of([&] {

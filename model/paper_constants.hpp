@@ -6,10 +6,10 @@
 namespace model {
 
 // poly.code_quality_factor
-inline constexpr const char* kPaperCodeQualityFactor = "9.4135";
+inline constexpr const char* kPaperCodeQualityFactor = "9.1085";
 // pio.per_pe_cycles
 inline constexpr const char* kPaperPerPeCycles = "20";
 // control.transfer_call_cycles
-inline constexpr const char* kPaperTransferCallCycles = "2888";
+inline constexpr const char* kPaperTransferCallCycles = "2917";
 
 }  // namespace model

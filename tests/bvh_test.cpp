@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, BvhInvariants,
                          });
 
 TEST(Bvh, NothingHasNoNodes) {
-  const Bvh bvh = build_bvh({}, {});
+  const Bvh bvh = build_bvh(std::vector<Triangle>{}, {});
   EXPECT_TRUE(bvh.nodes.empty());
   EXPECT_TRUE(bvh.triangles.empty());
   EXPECT_EQ(sah_cost(bvh, {}), 0.0);
@@ -121,8 +121,10 @@ TEST(Bvh, OptionsOutOfRangeAreNamed) {
   };
   EXPECT_EQ(message({1, 4}), "BVH: width is 1, allowed are 2 to 8");
   EXPECT_EQ(message({9, 4}), "BVH: width is 9, allowed are 2 to 8");
-  EXPECT_EQ(message({4, 0}), "BVH: number of triangles a leaf is 0, allowed are 1 to 32");
-  EXPECT_EQ(message({4, 33}), "BVH: number of triangles a leaf is 33, allowed are 1 to 32");
+  EXPECT_EQ(message({4, 0}), "BVH: number of triangles a leaf is 0, allowed are 1 to 30");
+  EXPECT_EQ(message({4, 31}), "BVH: number of triangles a leaf is 31, allowed are 1 to 30");
+  EXPECT_EQ(message({4, 4, 15}), "BVH: depth is 15, allowed are 16 to 128");
+  EXPECT_EQ(message({4, 4, 129}), "BVH: depth is 129, allowed are 16 to 128");
 }
 
 TEST(Bvh, ARayOfASoupIsExpectedToCostAHundredthOfBruteForce) {

@@ -11,6 +11,7 @@ namespace {
 
 using path_tracer::Program;
 using path_tracer::ProgramConfig;
+using path_tracer::Traversal;
 
 std::vector<std::string> expected_parts() {
   std::vector<std::string> parts{"hazard", "kernel '", "request ", " bytes, ", "semaphore '"};
@@ -26,12 +27,18 @@ bool has_all(const std::string& message, const std::vector<std::string>& parts) 
 }
 
 /// Empty when it came to its end, or was refused before it began.
-std::string fault_of(const testbench::Scene& scene, Program program, int n, int blocks) {
+std::string fault_of(const testbench::Scene& scene, const ProgramConfig& config) {
   try {
-    return test_support::run_checked(scene, test_support::checked_program(program, n, blocks), 8, 1).fault;
+    return test_support::run_checked(scene, config, 8, 1).fault;
   } catch (const path_tracer::ProgramError&) {
     return "";
   }
+}
+
+std::vector<Traversal> traversals() {
+  using test_support::kTreeTraversals;
+  if (MUTANT_OF_TREE) return {std::begin(kTreeTraversals), std::end(kTreeTraversals)};
+  return {Traversal::brute_force};
 }
 
 /// Whether a configuration can do without the missing line differs: nothing is ahead at n = 0, with many
@@ -40,19 +47,19 @@ TEST(Mutant, IsStopped) {
   const std::vector<std::string> parts = expected_parts();
   std::set<std::string> stopped;
   std::set<std::string> as_expected;
-  for (const testbench::Scene& scene : {test_support::small_scene(), test_support::open_scene()}) {
-    for (const Program program : {Program::segments, Program::direct, Program::full}) {
-      for (const int n : {0, 1, 3, 8}) {
-        for (const int blocks : {1, 2, 4, 8}) {
-          const std::string fault = fault_of(scene, program, n, blocks);
-          if (fault.empty()) continue;
-          test_support::expect_one_line(fault);
-          stopped.insert(fault);
-          if (has_all(fault, parts)) as_expected.insert(fault);
-        }
-      }
-    }
-  }
+  const auto try_one = [&](const testbench::Scene& scene, const ProgramConfig& config) {
+    const std::string fault = fault_of(scene, config);
+    if (fault.empty()) return;
+    test_support::expect_one_line(fault);
+    stopped.insert(fault);
+    if (has_all(fault, parts)) as_expected.insert(fault);
+  };
+  for (const testbench::Scene& scene : {test_support::small_scene(), test_support::open_scene()})
+    for (const Program program : {Program::segments, Program::direct, Program::full})
+      for (const Traversal traversal : traversals())
+        for (const int n : {0, 1, 3, 8})
+          for (const int blocks : {1, 2, 4, 8})
+            try_one(scene, test_support::checked_program(program, traversal, n, blocks));
   EXPECT_FALSE(stopped.empty()) << MUTANT << " was never noticed";
   EXPECT_FALSE(as_expected.empty()) << MUTANT << " was not noticed as " << MUTANT_EXPECTED << ", but as "
                                     << (stopped.empty() ? "nothing" : *stopped.begin());

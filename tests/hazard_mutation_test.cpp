@@ -10,10 +10,12 @@ namespace {
 
 using path_tracer::Program;
 using path_tracer::ProgramConfig;
+using path_tracer::Traversal;
 using test_support::checked_program;
 using test_support::CheckedRun;
 using test_support::expect_one_line;
 using test_support::expect_parts;
+using test_support::kTreeTraversals;
 using test_support::Mutation;
 using test_support::open_scene;
 using test_support::run_checked;
@@ -23,9 +25,10 @@ constexpr Program kPrograms[] = {Program::segments, Program::direct, Program::fu
 
 void expect_clean(const testbench::Scene& scene, const ProgramConfig& config, int num_pes) {
   const CheckedRun run = run_checked(scene, config, num_pes);
-  EXPECT_EQ(run.fault, "") << "program " << int(config.program) << ", n " << config.n << ", loads "
-                           << config.buffer_loads << ", saves " << config.buffer_saves << ", "
-                           << config.bin_blocks << " blocks of " << num_pes << " PEs";
+  EXPECT_EQ(run.fault, "") << "program " << int(config.program) << ", traversal " << int(config.traversal)
+                           << ", n " << config.n << ", loads " << config.buffer_loads << ", saves "
+                           << config.buffer_saves << ", " << config.bin_blocks << " blocks of " << num_pes
+                           << " PEs";
   EXPECT_GT(run.requests, 20u);
 }
 
@@ -59,6 +62,34 @@ TEST(SoundFirmware, RunsCleanOnEveryShapeOfBins) {
   }
 }
 
+TEST(SoundFirmware, RunsCleanThroughATreeAtEveryLevelOfBuffering) {
+  for (const Program program : kPrograms)
+    for (const Traversal traversal : kTreeTraversals)
+      for (int n = 0; n <= 8; ++n)
+        for (const bool loads : {false, true})
+          for (const bool saves : {false, true}) {
+            ProgramConfig config = checked_program(program, traversal, n, std::max(1, n));
+            config.buffer_loads = loads;
+            config.buffer_saves = saves;
+            expect_clean(small_scene(), config, 8);
+            expect_clean(open_scene(), config, 16);
+          }
+}
+
+TEST(SoundFirmware, RunsCleanThroughEveryShapeOfTreeAndBins) {
+  for (const Traversal traversal : kTreeTraversals)
+    for (const int num_pes : {8, 24, 96})
+      for (const int blocks : {1, 2, 3, 16})
+        for (const int nodes : {1, 8})
+          for (const int stack : {0, 1, 8}) {
+            ProgramConfig config = checked_program(Program::full, traversal, std::min(3, blocks), blocks);
+            config.tree.resident_nodes = config.tree.treelet_nodes = nodes;
+            config.tree.leaf_triangles = nodes;
+            config.tree.stack_entries = stack;
+            expect_clean(open_scene(), config, num_pes);
+          }
+}
+
 /// Every single wait of a run, one after the other.
 void expect_every_wait_is_needed(const testbench::Scene& scene, const ProgramConfig& config) {
   const CheckedRun sound = run_checked(scene, config, 8, 1);
@@ -71,7 +102,8 @@ void expect_every_wait_is_needed(const testbench::Scene& scene, const ProgramCon
     expect_one_line(broken.fault);
     expect_parts(broken.fault, {"hazard", "kernel '", "request ", " bytes, ", "semaphore '"});
     ASSERT_FALSE(testing::Test::HasFailure())
-        << "program " << int(config.program) << ", n " << config.n << ", wait " << wait;
+        << "program " << int(config.program) << ", traversal " << int(config.traversal) << ", n " << config.n
+        << ", wait " << wait;
   }
 }
 
@@ -82,6 +114,15 @@ TEST(BrokenFirmware, IsStoppedWhicheverWaitIsLeftOut) {
       expect_every_wait_is_needed(open_scene(), checked_program(program, n));
       if (testing::Test::HasFailure()) return;
     }
+  }
+}
+
+TEST(BrokenFirmware, IsStoppedWhicheverWaitOnTheWayThroughATreeIsLeftOut) {
+  for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill}) {
+    expect_every_wait_is_needed(small_scene(), checked_program(Program::direct, traversal, 1));
+    for (const int n : {0, 3})
+      expect_every_wait_is_needed(small_scene(), checked_program(Program::segments, traversal, n));
+    if (testing::Test::HasFailure()) return;
   }
 }
 
@@ -110,7 +151,7 @@ TEST(BrokenFirmware, KernelsThatReportNothingAreRefused) {
   testbench::NativeMachine machine(8, 6144, 1 << 20);
   model::HazardChecker checker(machine);
   machine.set_access_observer(&checker);
-  const auto layout = path_tracer::make_layout(12, 12, 8, config);
+  const auto layout = path_tracer::make_layout({12, 12}, 8, config);
   const path_tracer::CameraRecord camera{{}, {}, {}, {}, 4, 4};
   machine.write_mono(layout.camera, camera);
   expect_parts(test_support::fault_of([&] {

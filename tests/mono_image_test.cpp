@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "testbench/error.hpp"
+#include "testbench/faces.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -17,7 +18,6 @@ using path_tracer::SurfaceRecord;
 using path_tracer::TriangleRecord;
 using testbench::make_mono_image;
 using testbench::MonoImage;
-using testbench::number_faces;
 using testbench::Scene;
 using testbench::Triangle;
 
@@ -49,6 +49,25 @@ Scene three_triangles() {
   return scene;
 }
 
+/// The power of two by which a record's edges are longer than the triangle's.
+double scale_of(const TriangleRecord& record, const Triangle& triangle) {
+  const double scale =
+      glm::length(vector(record.edge1)) / glm::length(triangle.vertex[1] - triangle.vertex[0]);
+  return std::exp2(std::round(std::log2(scale)));
+}
+
+/// What the firmware is told of a triangle, but for the scale.
+void expect_triangle(const TriangleRecord& record, const Scene& scene, int number) {
+  const Triangle& triangle = scene.triangles[std::size_t(number)];
+  const double scale = scale_of(record, triangle);
+  EXPECT_EQ(vector(record.vertex), triangle.vertex[0]);
+  EXPECT_EQ(vector(record.edge1), (triangle.vertex[1] - triangle.vertex[0]) * scale);
+  EXPECT_EQ(vector(record.edge2), (triangle.vertex[2] - triangle.vertex[0]) * scale);
+  EXPECT_EQ(vector(record.back), testbench::area_normal(triangle) * -scale);
+  EXPECT_EQ(record.face, number);
+  EXPECT_EQ(record.number, number);
+}
+
 TEST(MonoImage, HoldsTrianglesAndSurfacesInTheScenesOrder) {
   const Scene scene = three_triangles();
   const MonoImage image = make_mono_image(scene, 96, {});
@@ -56,11 +75,7 @@ TEST(MonoImage, HoldsTrianglesAndSurfacesInTheScenesOrder) {
   for (int i = 0; i < 3; ++i) {
     const Triangle& triangle = scene.triangles[std::size_t(i)];
     const testbench::Material& material = scene.materials[std::size_t(triangle.material)];
-    const auto in_image = record(image, image.layout.triangles, i);
-    EXPECT_EQ(vector(in_image.vertex), triangle.vertex[0]);
-    EXPECT_EQ(vector(in_image.edge1), triangle.vertex[1] - triangle.vertex[0]);
-    EXPECT_EQ(vector(in_image.edge2), triangle.vertex[2] - triangle.vertex[0]);
-    EXPECT_EQ(in_image.face, i);
+    expect_triangle(record(image, image.layout.triangles, i), scene, i);
     const auto surface = record(image, image.layout.surfaces, i);
     EXPECT_EQ(vector(surface.reflectance), material.reflectance);
     EXPECT_EQ(vector(surface.emission), material.emission);
@@ -243,64 +258,6 @@ TEST(MonoImage, PiecesLieOneBehindTheOther) {
   EXPECT_LT(layout.total_bytes, end + 64);
   EXPECT_EQ(image.bytes.size(), layout.scene_bytes);
   EXPECT_EQ(layout.scene_bytes, layout.ray_bin.address);
-}
-
-TEST(Faces, NeighboursInOnePlaneShare) {
-  // A quad, its neighbour in the plane, and one folded up by a little.
-  const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0), e(2, 0, 0), f(2, 1, 0), up(0, 2, 1e-6);
-  EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{a, c, d}, 0}, {{b, e, f}, 0}, {{b, f, c}, 0}, {{d, c, up}, 0}}),
-            (std::vector<std::int32_t>{0, 0, 0, 0, 1}));
-}
-
-TEST(Faces, OrderAndMaterialDoNotMatter) {
-  const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0), e(2, 0, 0), f(2, 1, 0);
-  // The first and the second touch through the third only.
-  EXPECT_EQ(number_faces({{{d, a, c}, 0}, {{b, e, f}, 1}, {{a, b, c}, 2}, {{b, f, c}, 0}}),
-            (std::vector<std::int32_t>{0, 0, 0, 0}));
-}
-
-TEST(Faces, WindingDoesNotMatter) {
-  const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0);
-  EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{a, d, c}, 0}}), (std::vector<std::int32_t>{0, 0}));
-}
-
-TEST(Faces, SlantedPlanesAreRecognisedInSpiteOfRounding) {
-  const auto turned = [](double x, double y) {
-    const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
-    const glm::dvec3 v = glm::normalize(glm::cross(u, glm::dvec3(0.3, -1, 0.2)));
-    return glm::dvec3(100, -70, 30) + u * x + v * y;
-  };
-  std::vector<Triangle> triangles;
-  for (int i = 0; i < 20; ++i) {
-    const glm::dvec3 p[4] = {turned(i / 3.0, 0), turned((i + 1) / 3.0, 0), turned((i + 1) / 3.0, 1),
-                             turned(i / 3.0, 1)};
-    triangles.push_back({{p[0], p[1], p[2]}, 0});
-    triangles.push_back({{p[0], p[2], p[3]}, 0});
-  }
-  for (const std::int32_t face : number_faces(triangles)) EXPECT_EQ(face, 0);
-}
-
-TEST(Faces, TouchingInAPointOrAPartOfAnEdgeIsNotEnough) {
-  const glm::dvec3 a(0, 0, 0), b(2, 0, 0), c(0, 2, 0);
-  // In the same plane: one that shares a corner, and one with half of the edge (a T-junction).
-  EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{b, {4, 0, 0}, {4, 2, 0}}, 0}, {{a, {1, 0, 0}, {0, -1, 0}}, 0}}),
-            (std::vector<std::int32_t>{0, 1, 2}));
-}
-
-TEST(Faces, ParallelPlanesAreApart) {
-  EXPECT_EQ(number_faces({{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0}, {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, 0}}),
-            (std::vector<std::int32_t>{0, 1}));
-}
-
-TEST(Faces, ACubeHasSix) {
-  const Scene cube = test_support::closed_cube(0.5, 0.5, {4, 4});
-  const std::vector<std::int32_t> faces = number_faces(cube.triangles);
-  ASSERT_EQ(faces.size(), 12u);
-  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(faces[i], std::int32_t(i / 2));
-}
-
-TEST(Faces, NoneForNoTriangles) {
-  EXPECT_TRUE(number_faces({}).empty());
 }
 
 }  // namespace

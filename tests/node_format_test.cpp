@@ -133,10 +133,10 @@ INSTANTIATE_TEST_SUITE_P(Formats, NodeFormats,
                          });
 
 TEST(NodeLayout, SizesOfANode) {
-  EXPECT_EQ((NodeLayout{NodeFormat::fp64, 4}.node_bytes()), 4 * (48 + 8));
-  EXPECT_EQ((NodeLayout{NodeFormat::fp32, 4}.node_bytes()), 4 * (24 + 8));
-  EXPECT_EQ((NodeLayout{NodeFormat::quantised8, 4}.node_bytes()), 32 + 4 * (6 + 8));
-  EXPECT_EQ((NodeLayout{NodeFormat::quantised8, 2}.node_bytes()), 32 + 16 + 2 * 8);
+  EXPECT_EQ((NodeLayout{NodeFormat::fp64, 4}.node_bytes()), 4 * (48 + 4));
+  EXPECT_EQ((NodeLayout{NodeFormat::fp32, 4}.node_bytes()), 4 * (24 + 4));
+  EXPECT_EQ((NodeLayout{NodeFormat::quantised8, 4}.node_bytes()), 32 + 4 * (6 + 4));
+  EXPECT_EQ((NodeLayout{NodeFormat::quantised8, 2}.node_bytes()), 32 + 16 + 2 * 4);
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ std::vector<Region> bin_regions(const Layout& layout, std::uint64_t slots, const
 
 TEST(LayoutTest, NamesCoverEveryRegion) {
   ProgramConfig config;
-  const Layout layout = make_layout(37, 5, 96, config);
+  const Layout layout = make_layout({37, 5}, 96, config);
   std::vector<Region> expected = scene_regions(layout);
   for (const Region& r : bin_regions(layout, 96 * std::uint64_t(config.bin_blocks), config))
     expected.push_back(r);
@@ -142,7 +142,7 @@ TEST(LayoutTest, RegionsAreAlignedApartAndWithinTheirParts) {
         ProgramConfig config;
         config.bin_blocks = blocks;
         config.slot_vertices = 4 * blocks;
-        const Layout layout = make_layout(triangles, (triangles + 1) / 2, num_pes, config);
+        const Layout layout = make_layout({triangles, (triangles + 1) / 2}, num_pes, config);
         EXPECT_EQ(layout.triangle_count, triangles);
         EXPECT_EQ(layout.light_count, (triangles + 1) / 2);
 
@@ -168,7 +168,7 @@ TEST(LayoutTest, RegionsAreAlignedApartAndWithinTheirParts) {
 /// A program set up on a machine of its own; nothing runs.
 struct PreparedProgram {
   PreparedProgram(const ProgramConfig& config, int sram_bytes, int num_pes = 96)
-      : layout(make_layout(2, 1, num_pes, config)), machine(num_pes, sram_bytes, layout.total_bytes) {
+      : layout(make_layout({2, 1}, num_pes, config)), machine(num_pes, sram_bytes, layout.total_bytes) {
     machine.write_mono(layout.camera, path_tracer::CameraRecord{{}, {}, {}, {}, 4, 4});
     tracer.emplace(machine, kernels, config, layout, path_tracer::Work{0, 1});
   }

@@ -25,8 +25,27 @@ Exact exact(const Vector& v) {
   return {v.x, v.y, v.z};
 }
 
-TriangleRecord triangle(const Vector& a, const Vector& b, const Vector& c, int face = 0) {
-  return path_tracer::triangle_record(a, b - a, c - a, face);
+/// A triangle as the scene has it.
+struct Shape {
+  Vector vertex;
+  Vector edge1;
+  Vector edge2;
+  int face;
+};
+
+Shape triangle(const Vector& a, const Vector& b, const Vector& c, int face = 0) {
+  return {a, b - a, c - a, face};
+}
+
+constexpr double kReach = 1e4;  // more than any of the triangles that have no scale of their own wants
+
+/// Numbered as they come.
+std::vector<TriangleRecord> records(const std::vector<Shape>& shapes, double reach = kReach) {
+  std::vector<TriangleRecord> records;
+  for (const Shape& shape : shapes)
+    records.push_back(path_tracer::triangle_record(shape.vertex, shape.edge1, shape.edge2,
+                                                   {shape.face, std::int32_t(records.size()), reach}));
+  return records;
 }
 
 struct Ray {
@@ -42,7 +61,7 @@ struct Meeting {
   bool front = false;
 };
 
-Meeting meet(const Ray& ray, const TriangleRecord& t) {
+Meeting meet(const Ray& ray, const Shape& t) {
   const Exact edge1 = exact(t.edge1);
   const Exact edge2 = exact(t.edge2);
   const Exact direction = exact(ray.direction);
@@ -86,21 +105,24 @@ class TriangleTest : public test_support::StripFixture {
   }
 
   Hits nearest(const std::vector<Ray>& some_rays, const std::vector<TriangleRecord>& triangles,
-               int left_face = kNoFace) {
+               double reach = kReach, int left_face = kNoFace) {
     const std::vector<Ray> rays = on_all_pes(some_rays);
     Hits hits{per_pe<std::int32_t>(), per_pe<double>(), per_pe<double>()};
     run([&] {
-      const path_tracer::Nearest found =
-          path_tracer::nearest_triangle(load3(rays, &Ray::origin), load3(rays, &Ray::direction), left_face,
-                                        triangles.data(), int(triangles.size()));
-      store(hits.triangle, found.triangle);
+      const path_tracer::RayOperands ray{load3(rays, &Ray::origin), load3(rays, &Ray::direction), left_face};
+      path_tracer::Nearest found;
+      search(ray, reach, path_tracer::MonoTriangles{triangles.data(), int(triangles.size())}, found);
+      store(hits.triangle, found.number);
       store(hits.distance, found.distance / cn::abs(found.determinant));
       store(hits.determinant, found.determinant);
     });
     return hits;
   }
   int nearest_one(const Ray& ray, const std::vector<TriangleRecord>& triangles, int left_face = kNoFace) {
-    return nearest({ray}, triangles, left_face).triangle[0];
+    return nearest({ray}, triangles, kReach, left_face).triangle[0];
+  }
+  int nearest_one(const Ray& ray, const std::vector<Shape>& triangles, int left_face = kNoFace) {
+    return nearest_one(ray, records(triangles), left_face);
   }
 
   double uniform(double low, double high) {
@@ -120,7 +142,7 @@ class TriangleTest : public test_support::StripFixture {
   std::mt19937_64 random_{31};
 };
 
-const TriangleRecord kUnit = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});  // its front looks along +z
+const Shape kUnit = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});  // its front looks along +z
 
 TEST_F(TriangleTest, AgreesWithTheExactNearestHitAtAnyScale) {
   for (const double scale : {1e-8, 1e-3, 1.0, 1e5, 1e8}) {
@@ -128,11 +150,12 @@ TEST_F(TriangleTest, AgreesWithTheExactNearestHitAtAnyScale) {
     int hits = 0;
     int misses = 0;
     for (int round = 0; round < 20; ++round) {
-      std::vector<TriangleRecord> triangles;
+      std::vector<Shape> triangles;
       for (int i = 0; i < 24; ++i) triangles.push_back(triangle(point(scale), point(scale), point(scale), i));
       std::vector<Ray> rays;
       for (int pe = 0; pe < num_pes(); ++pe) rays.push_back({point(scale), unit_vector()});
-      const Hits found = nearest(rays, triangles);
+      const double reach = 4 * scale;
+      const Hits found = nearest(rays, records(triangles, reach), reach);
       for (std::size_t pe = 0; pe < rays.size(); ++pe) {
         int expected = -1;
         Meeting nearest_meeting;
@@ -165,9 +188,9 @@ TEST_F(TriangleTest, ShadowRaysHitTheLightUnlessTheExactBlockersAreNearer) {
     SCOPED_TRACE(scale);
     int counts[2] = {0, 0};
     for (int round = 0; round < 600; ++round) {
-      std::vector<TriangleRecord> triangles;
+      std::vector<Shape> triangles;
       for (int i = 0; i < 4; ++i) triangles.push_back(triangle(point(scale), point(scale), point(scale), i));
-      const TriangleRecord& light = triangles[kLight];
+      const Shape& light = triangles[kLight];
       const double u = uniform(0.01, 0.49);
       const double v = uniform(0.01, 0.49);
       const Vector from = point(scale);
@@ -181,7 +204,9 @@ TEST_F(TriangleTest, ShadowRaysHitTheLightUnlessTheExactBlockersAreNearer) {
         blocked |= margin > 0;
       }
       if (too_close_to_call) continue;
-      ASSERT_EQ(nearest_one(ray, triangles) == kLight, !blocked);
+      const double reach = 4 * scale;
+      const Hits found = nearest({ray}, records(triangles, reach), reach);
+      ASSERT_EQ(found.triangle[0] == kLight, !blocked);
       ++counts[blocked];
     }
     EXPECT_GT(counts[0], 100);
@@ -192,7 +217,7 @@ TEST_F(TriangleTest, ShadowRaysHitTheLightUnlessTheExactBlockersAreNearer) {
 /// The distance is in lengths of the direction.
 TEST_F(TriangleTest, DirectionsNeedNotBeOfUnitLength) {
   for (const double length : {0x1p-30, 0.5, 3.0, 0x1p30}) {
-    const Hits hits = nearest({{{0.25, 0.25, 2}, {0, 0, -length}}}, {kUnit});
+    const Hits hits = nearest({{{0.25, 0.25, 2}, {0, 0, -length}}}, records({kUnit}));
     EXPECT_EQ(hits.triangle[0], 0) << length;
     EXPECT_EQ(hits.distance[0], 2 / length);
   }
@@ -213,11 +238,11 @@ TEST_F(TriangleTest, EdgesAndVerticesBelongToTheTriangle) {
 }
 
 TEST_F(TriangleTest, FrontAndBackAreToldApart) {
-  const Hits front = nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, {kUnit});
+  const Hits front = nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, records({kUnit}));
   EXPECT_EQ(front.triangle[0], 0);
   EXPECT_GT(front.determinant[0], 0);
   EXPECT_EQ(front.distance[0], 2.0);
-  const Hits back = nearest({{{0.25, 0.25, -3}, {0, 0, 1}}}, {kUnit});
+  const Hits back = nearest({{{0.25, 0.25, -3}, {0, 0, 1}}}, records({kUnit}));
   EXPECT_EQ(back.triangle[0], 0);
   EXPECT_LT(back.determinant[0], 0);
   EXPECT_EQ(back.distance[0], 3.0);
@@ -235,7 +260,7 @@ TEST_F(TriangleTest, ParallelRaysMiss) {
          {Vector{-2, 0.25, 0}, {0.25, 0.25, 0}, {0, 0, 0}, {0.25, 2, 0}, {0.25, 0.25, 1}, {0, 0, -1}}) {
       EXPECT_EQ(nearest_one({origin, direction}, {kUnit}), -1);
       // Nor do they hide what is met.
-      const TriangleRecord wall =
+      const Shape wall =
           triangle({origin + direction * 4 + Vector{-9, -9, -9}}, origin + direction * 4 + Vector{9, -9, 9},
                    origin + direction * 4 + Vector{0, 9, 0}, 1);
       EXPECT_EQ(nearest_one({origin, direction}, {kUnit, wall}),
@@ -245,20 +270,20 @@ TEST_F(TriangleTest, ParallelRaysMiss) {
 }
 
 TEST_F(TriangleTest, TrianglesWithoutAreaAreNeverHit) {
-  const std::vector<TriangleRecord> degenerate{
+  const std::vector<Shape> degenerate{
       triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}),                      // a point
       triangle({-1, -1, 0}, {1, 1, 0}, {3, 3, 0}),                    // a line
       triangle({0.1, 0.2, 0.3}, {0.4, -0.5, 0.7}, {0.4, -0.5, 0.7}),  // two equal vertices
       triangle({0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, {0.4, -0.5, 0.7})};
-  std::vector<TriangleRecord> with_wall = degenerate;
+  std::vector<Shape> with_wall = degenerate;
   with_wall.push_back(triangle({-1e3, -1e3, -5}, {3e3, -1e3, -5}, {-1e3, 3e3, -5}, 1));
   std::vector<Ray> rays{{{0, 0, 2}, {0, 0, -1}}, {{0.5, 0.5, 2}, {0, 0, -1}}, {{-2, -2, 0}, {1, 1, 0}}};
   while (rays.size() < std::size_t(num_pes())) {
     const Vector origin{uniform(-2, 2), uniform(-2, 2), 2};
     rays.push_back({origin, Vector{uniform(-1, 1), uniform(-1, 1), -0.5} - origin});
   }
-  const Hits nothing = nearest(rays, degenerate);
-  const Hits wall = nearest(rays, with_wall);
+  const Hits nothing = nearest(rays, records(degenerate));
+  const Hits wall = nearest(rays, records(with_wall));
   for (std::size_t pe = 0; pe < rays.size(); ++pe) {
     EXPECT_EQ(nothing.triangle[pe], -1) << pe;
     EXPECT_EQ(wall.triangle[pe], rays[pe].direction.z < 0 ? 4 : -1) << pe;
@@ -266,9 +291,9 @@ TEST_F(TriangleTest, TrianglesWithoutAreaAreNeverHit) {
 }
 
 TEST_F(TriangleTest, ARayIgnoresTheFaceThatItLeaves) {
-  const std::vector<TriangleRecord> triangles{triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 5),
-                                              triangle({0, 0, -1}, {1, 0, -1}, {0, 1, -1}, 5),
-                                              triangle({0, 0, -2}, {1, 0, -2}, {0, 1, -2}, 6)};
+  const std::vector<Shape> triangles{triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 5),
+                                     triangle({0, 0, -1}, {1, 0, -1}, {0, 1, -1}, 5),
+                                     triangle({0, 0, -2}, {1, 0, -2}, {0, 1, -2}, 6)};
   const Ray ray{{0.25, 0.25, 1}, {0, 0, -1}};
   EXPECT_EQ(nearest_one(ray, triangles), 0);
   EXPECT_EQ(nearest_one(ray, triangles, 5), 2);
@@ -276,21 +301,22 @@ TEST_F(TriangleTest, ARayIgnoresTheFaceThatItLeaves) {
 }
 
 TEST_F(TriangleTest, NanNeverWins) {
-  const TriangleRecord wall = triangle({-9, -9, -1}, {9, -9, -1}, {0, 9, -1}, 1);
+  const std::vector<TriangleRecord> both =
+      records({kUnit, triangle({-9, -9, -1}, {9, -9, -1}, {0, 9, -1}, 1)});
   const Ray good{{0.25, 0.25, 1}, {0, 0, -1}};
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     for (double Vector::*component : {&Vector::x, &Vector::y, &Vector::z}) {
       for (Vector TriangleRecord::*member :
-           {&TriangleRecord::vertex, &TriangleRecord::edge1, &TriangleRecord::edge2}) {
-        TriangleRecord broken = kUnit;
+           {&TriangleRecord::vertex, &TriangleRecord::edge1, &TriangleRecord::edge2, &TriangleRecord::back}) {
+        TriangleRecord broken = both[0];
         broken.*member.*component = bad;
-        EXPECT_EQ(nearest_one(good, {broken, wall}), 1) << bad;
-        EXPECT_EQ(nearest_one(good, {wall, broken}), 0) << bad;
+        EXPECT_EQ(nearest_one(good, std::vector{broken, both[1]}), 1) << bad;
+        EXPECT_EQ(nearest_one(good, std::vector{both[1], broken}), 1) << bad;
       }
       for (Vector Ray::*member : {&Ray::origin, &Ray::direction}) {
         Ray broken = good;
         broken.*member.*component = bad;
-        const Hits hits = nearest({good, broken, good}, {kUnit, wall});
+        const Hits hits = nearest({good, broken, good}, both);
         EXPECT_EQ(hits.triangle[0], 0);
         EXPECT_EQ(hits.triangle[1], -1) << bad;
         EXPECT_EQ(hits.triangle[2], 0);
@@ -299,23 +325,47 @@ TEST_F(TriangleTest, NanNeverWins) {
   }
 }
 
-TEST_F(TriangleTest, EqualDistancesGoToTheFirst) {
-  EXPECT_EQ(nearest_one({{0.25, 0.25, 2}, {0, 0, -1}}, {kUnit, kUnit, kUnit}), 0);
+TEST_F(TriangleTest, EqualDistancesGoToTheLowestNumber) {
+  const Ray ray{{0.25, 0.25, 2}, {0, 0, -1}};
+  std::vector<TriangleRecord> three = records({kUnit, kUnit, kUnit});
+  EXPECT_EQ(nearest_one(ray, three), 0);
+  std::rotate(three.begin(), three.begin() + 1, three.end());
+  EXPECT_EQ(nearest_one(ray, three), 0);
+  std::rotate(three.begin(), three.begin() + 1, three.end());
+  EXPECT_EQ(nearest_one(ray, three), 0);
 }
 
 TEST_F(TriangleTest, NothingIsInfinitelyFar) {
-  EXPECT_EQ(nearest_one({{0.25, 0.25, 2}, {0, 0, -1}}, {}), -1);
-  EXPECT_EQ(nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, {}).distance[0], kInfinity);
+  const Hits hits = nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, records({}));
+  EXPECT_EQ(hits.triangle[0], -1);
+  EXPECT_EQ(hits.distance[0], kInfinity);
 }
 
-/// Cost is data-independent: the same for rays that all miss.
-TEST_F(TriangleTest, IssuesTheSameForEveryRay) {
-  nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, {kUnit, kUnit});
+/// What starts a search may be what an earlier one found.
+TEST_F(TriangleTest, SearchesGoOnWhereOthersEnded) {
+  const std::vector<TriangleRecord> triangles = records({kUnit, triangle({0, 0, 1}, {1, 0, 1}, {0, 1, 1})});
+  PerPe<std::int32_t> found = per_pe<std::int32_t>();
+  run([&] {
+    const path_tracer::RayOperands ray{{0.25, 0.25, 2.0}, {0.0, 0.0, -1.0}, kNoFace};
+    path_tracer::Nearest nearest;
+    for (const int first : {1, 0})
+      search(ray, kReach, path_tracer::MonoTriangles{&triangles[std::size_t(first)], 1}, nearest);
+    store(found, nearest.number);
+  });
+  EXPECT_EQ(found, per_pe(1));
+}
+
+/// Cost is the same for rays that hit and rays that miss; only ties and hits that rounding decides cost more.
+TEST_F(TriangleTest, IssuesTheSameForEveryRayWithoutTies) {
+  const std::vector<TriangleRecord> two = records({kUnit, triangle({0, 0, 1}, {1, 0, 1}, {0, 1, 1})});
+  ASSERT_EQ(nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, two).triangle[0], 1);
   const cn::IssueCounts hit = issue_tree.total();
-  nearest({{{5, 5, 2}, {0, 0, 1}}}, {kUnit, kUnit});
+  ASSERT_EQ(nearest({{{5, 5, 2}, {0, 0, 1}}}, two).triangle[0], -1);
   EXPECT_EQ(issue_tree.total(), hit);
   EXPECT_EQ(hit[InstructionClass::mono], 2 * 16u);
   EXPECT_EQ(hit[InstructionClass::fp64_mul], 2 * 20u);
+  nearest({{{0.25, 0.25, 2}, {0, 0, -1}}}, records({kUnit, kUnit}));
+  EXPECT_GT(issue_tree.total()[InstructionClass::fp64_mul], hit[InstructionClass::fp64_mul]);
 }
 
 }  // namespace

@@ -29,10 +29,10 @@ void pack_and_encode(benchmark::State& state) {
   const Bvh bvh = build_bvh(soup(state), {});
   const path_tracer::NodeLayout layout{path_tracer::NodeFormat::quantised8, bvh.width};
   for (auto _ : state) {
-    const Treelets treelets = pack_treelets(bvh, 1024 / layout.node_bytes());
+    const Treelets treelets = pack_treelets(bvh, {1, 1024 / layout.node_bytes()});
     benchmark::DoNotOptimize(encode_treelets(bvh, treelets, layout));
     state.counters["bytes a triangle"] =
-        double(treelets.count) * treelets.nodes_per_treelet * layout.node_bytes() / double(state.range(0));
+        double(treelets.slots()) * layout.node_bytes() / double(state.range(0));
   }
 }
 BENCHMARK(pack_and_encode)->RangeMultiplier(10)->Range(1000, 1000000)->Unit(benchmark::kMillisecond);

@@ -12,6 +12,7 @@ using namespace path_tracer;
 
 constexpr int kPes = 96;
 constexpr int kTriangles = 38;
+constexpr double kReach = 4.0;
 
 bool is_executable(Level level) {
   return level == Level::x86_64_v2 || (level == Level::x86_64_v3 && __builtin_cpu_supports("x86-64-v3")) ||
@@ -25,7 +26,7 @@ class KernelBench {
     for (int w = 0; w < 6144 / 8 - 2; ++w)
       for (int pe = 0; pe < kPes; ++pe) row(8 * w)[pe] = number();
     for (std::int32_t i = 0; i < kTriangles; ++i)
-      triangles[std::size_t(i)] = triangle_record(point(), point(), point(), i / 2);
+      triangles[std::size_t(i)] = triangle_record(point(), point(), point(), {i / 2, i, kReach});
   }
   double* row(int offset_bytes) { return reinterpret_cast<double*>(memory.row(offset_bytes)); }
 
@@ -60,6 +61,7 @@ void intersect(benchmark::State& state, Level level) {
   arguments.surface_place = {1024};
   arguments.triangles = bench.triangles.data();
   arguments.triangle_count = kTriangles;
+  arguments.reach = kReach;
   arguments.hit_something = &hit;
   run(state, bench, kernels(level).intersect, arguments, kTriangles);
 }

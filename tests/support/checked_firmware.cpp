@@ -17,7 +17,7 @@ CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::Program
                        int samples, const Mutation& mutation) {
   testbench::MonoImage image = testbench::make_mono_image(scene, num_pes, config);
   mutation.layout(image.layout);
-  constexpr int kPolyBytes = 16384;  // eight buffers of one stage need more than the CSX600's 6 KiB
+  constexpr int kPolyBytes = 32768;  // eight buffers of one stage need more than the CSX600's 6 KiB
   BrokenMachine machine(num_pes, kPolyBytes, image.layout.total_bytes, mutation.dropped_wait);
   machine.spare_semaphores_to(HostSemaphores::kResultsFree);
   std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());

@@ -42,4 +42,18 @@ inline path_tracer::ProgramConfig checked_program(path_tracer::Program program, 
   return config;
 }
 
+inline constexpr path_tracer::Traversal kTreeTraversals[] = {
+    path_tracer::Traversal::temporary_bin, path_tracer::Traversal::refill, path_tracer::Traversal::lock_step};
+
+/// The same through a tree of small pieces, so that rays load often.
+inline path_tracer::ProgramConfig checked_program(path_tracer::Program program,
+                                                  path_tracer::Traversal traversal, int n,
+                                                  int bin_blocks = 4) {
+  path_tracer::ProgramConfig config = checked_program(program, n, bin_blocks);
+  config.traversal = traversal;
+  config.tree.leaf_triangles = 1;
+  config.tree.stack_entries = 2;
+  return config;
+}
+
 }  // namespace test_support

@@ -1,0 +1,283 @@
+#include "tests/support/tree_search.hpp"
+
+#include <cstring>
+#include <stdexcept>
+
+#include "testbench/bvh/tree_image.hpp"
+
+namespace test_support {
+
+using cn::LaneMask;
+using cn::MonoAddress;
+using cn::PolyField;
+using cn::PolyPointer;
+using path_tracer::HitRecord;
+using path_tracer::QueuedRay;
+using path_tracer::RayRecord;
+using path_tracer::SurfaceRecord;
+using path_tracer::TraversalRecord;
+using path_tracer::TreeShape;
+using path_tracer::TriangleRecord;
+
+namespace {
+
+// Where arrays would lie in mono memory.
+constexpr MonoAddress kTriangles = 0x1000;
+constexpr MonoAddress kNodes = 0x300000040;
+constexpr MonoAddress kSurfaces = 0x500000080;
+constexpr MonoAddress kHits = 0x700000000;
+constexpr MonoAddress kSurfacePlaces = 0x900000000;
+
+constexpr int kPolyBytes = 32768;
+constexpr std::uint64_t kMostTurns = 200000;
+
+template <class Record>
+std::vector<Record> records_at(const testbench::MonoImage& image, MonoAddress first, MonoAddress end) {
+  std::vector<Record> records((end - first) / sizeof(Record));
+  std::memcpy(records.data(), image.bytes.data() + first, records.size() * sizeof(Record));
+  return records;
+}
+
+}  // namespace
+
+/// A PE's SRAM.
+struct RaySearch::Offsets {
+  explicit Offsets(const TreeShape& shape) {
+    int next = 0;
+    const auto take = [&](int bytes) {
+      const int at = next;
+      next += (bytes + 7) / 8 * 8;
+      return at;
+    };
+    record = take(shape.record_bytes());
+    ray = take(sizeof(QueuedRay));
+    hit = take(sizeof(HitRecord));
+    surface_place = take(8);
+    hit_to = take(8);
+    surface_place_to = take(8);
+    leaf_place = take(8);
+    treelet_place = take(8);
+    treelet_number = take(8);
+    leaf = take(shape.leaf_records() * int{sizeof(TriangleRecord)});
+    treelet = take(shape.treelet_bytes());
+    resident = take(shape.resident_bytes());
+    end = next;
+    if (end > kPolyBytes) throw std::logic_error("tree_search: more SRAM is needed");
+  }
+  int record, ray, hit, surface_place, hit_to, surface_place_to;
+  int leaf_place, treelet_place, treelet_number, leaf, treelet, resident, end;
+};
+
+SearchScene search_scene(const testbench::Scene& scene, const TreeShape& shape) {
+  path_tracer::ProgramConfig config;
+  SearchScene result;
+  const testbench::MonoImage plain = testbench::make_mono_image(scene, 96, config);
+  const MonoAddress first = plain.layout.triangles.address;
+  result.triangles =
+      records_at<TriangleRecord>(plain, first, first + scene.triangles.size() * sizeof(TriangleRecord));
+  config.traversal = path_tracer::Traversal::refill;
+  config.tree = result.shape = shape;
+  const testbench::MonoImage tree = testbench::make_mono_image(scene, 96, config);
+  for (const auto& region : tree.layout.regions) {
+    if (region.first == tree.layout.triangles.address)
+      result.leaves = records_at<TriangleRecord>(tree, region.first, region.first + region.bytes);
+    if (region.first == tree.layout.nodes.address)
+      result.nodes = records_at<std::uint8_t>(tree, region.first, region.first + region.bytes);
+  }
+  result.reach = tree.layout.reach;
+  return result;
+}
+
+SearchScene empty_search_scene(const TreeShape& shape) {
+  SearchScene scene;
+  scene.shape = shape;
+  scene.leaves.resize(std::size_t(shape.leaf_records()));
+  scene.nodes = testbench::make_tree_image({}, shape).nodes;
+  scene.reach = 1.0;
+  return scene;
+}
+
+bool same(const SearchHit& a, const SearchHit& b) {
+  return a.number == b.number && std::memcmp(&a.record, &b.record, sizeof(HitRecord)) == 0;
+}
+
+RaySearch::RaySearch(path_tracer::Level level)
+    : kernels_(path_tracer::kernels(level)), memory_(kPes, kPolyBytes) {}
+
+/// So that nobody gets along with what was left there.
+void RaySearch::scramble(int used_bytes) {
+  constexpr std::uint64_t kNoNumber = 0x7ff4dead7fa0beef;  // neither as a double nor as a float
+  std::fill_n(memory_.words(), std::size_t(kPes) * std::size_t(used_bytes / 8), kNoNumber);
+}
+
+void RaySearch::write(int pe, int offset_bytes, const void* from, std::size_t bytes) {
+  const auto* word = static_cast<const char*>(from);
+  for (std::uint64_t* to = memory_.row(offset_bytes) + pe; bytes > 0; bytes -= 8, word += 8, to += kPes)
+    std::memcpy(to, word, 8);
+}
+
+void RaySearch::read(int pe, int offset_bytes, void* to, std::size_t bytes) const {
+  auto* word = static_cast<char*>(to);
+  for (const std::uint64_t* from = memory_.row(offset_bytes) + pe; bytes > 0;
+       bytes -= 8, word += 8, from += kPes)
+    std::memcpy(word, from, 8);
+}
+
+SearchHit RaySearch::hit_of(int pe, const Offsets& at) const {
+  SearchHit found;
+  MonoAddress place = 0;
+  read(pe, at.hit, &found.record, sizeof(HitRecord));
+  read(pe, at.surface_place, &place, sizeof(place));
+  if (found.record.hit != 0) found.number = std::int32_t((place - kSurfaces) / sizeof(SurfaceRecord));
+  return found;
+}
+
+std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const std::vector<RayRecord>& rays) {
+  const Offsets at(scene.shape);
+  scramble(at.end);
+  const int count = static_cast<int>(rays.size());
+  for (int pe = 0; pe < count; ++pe) write(pe, at.ray, &rays[std::size_t(pe)], sizeof(RayRecord));
+  LaneMask hit_something;
+  path_tracer::IntersectArguments arguments;
+  arguments.ray = PolyPointer<RayRecord>(at.ray);
+  arguments.triangles = scene.triangles.data();
+  arguments.triangle_count = static_cast<int>(scene.triangles.size());
+  arguments.reach = scene.reach;
+  arguments.surfaces = kSurfaces;
+  arguments.hit = PolyPointer<HitRecord>(at.hit);
+  arguments.surface_place = {at.surface_place};
+  arguments.hit_something = &hit_something;
+  kernels_.intersect.run(arguments, memory_, LaneMask::first(count), issued_);
+  std::vector<SearchHit> hits;
+  for (int pe = 0; pe < count; ++pe) hits.push_back(hit_of(pe, at));
+  return hits;
+}
+
+std::vector<SearchHit> RaySearch::through_tree(const SearchScene& scene, const std::vector<QueuedRay>& rays,
+                                               bool move) {
+  const Offsets at(scene.shape);
+  scramble(at.end);
+  const int count = static_cast<int>(rays.size());
+  for (int pe = 0; pe < kPes; ++pe)
+    write(pe, at.resident, scene.nodes.data(), std::size_t(scene.shape.resident_bytes()));
+  for (int pe = 0; pe < count; ++pe) {
+    QueuedRay ray = rays[std::size_t(pe)];
+    ray.slot = pe;
+    write(pe, at.ray, &ray, sizeof(ray));
+  }
+  path_tracer::EnterArguments arguments;
+  arguments.ray = PolyPointer<QueuedRay>(at.ray);
+  arguments.first_light_run = static_cast<int>(scene.triangles.size());
+  arguments.record = PolyPointer<TraversalRecord>(at.record);
+  arguments.treelet = {at.treelet_number};
+  const LaneMask first_half = LaneMask::first(count / 2);
+  const LaneMask second_half = LaneMask::first(count).without(first_half);
+  kernels_.traversal().enter.run(arguments, memory_, first_half, issued_);
+  std::vector<SearchHit> hits(rays.size());
+  LaneMask alive = traverse(scene, at, first_half, nullptr);
+  finish(at, first_half.without(alive), hits);
+  LaneMask fresh = second_half;
+  for (std::uint64_t turn = 0; alive.any() || fresh.any(); ++turn) {
+    if (turn > kMostTurns) throw std::runtime_error("tree_search: a ray does not come to its end");
+    LaneMask has_leaf;
+    load_tree(scene, at, alive, has_leaf);
+    if (fresh.any()) kernels_.traversal().enter.run(arguments, memory_, fresh, issued_);
+    const LaneMask all = alive.with(fresh);
+    fresh = LaneMask{};
+    alive = traverse(scene, at, all, has_leaf.any() ? &has_leaf : nullptr);
+    finish(at, all.without(alive), hits);
+    if (move) alive = move_on(scene, at, alive);
+  }
+  return hits;
+}
+
+void RaySearch::load_tree(const SearchScene& scene, const Offsets& at, const LaneMask& rays,
+                          LaneMask& has_leaf) {
+  LaneMask has_treelet;
+  path_tracer::LocateArguments arguments;
+  arguments.record = PolyPointer<TraversalRecord>(at.record);
+  arguments.shape = scene.shape;
+  arguments.triangles = kTriangles;
+  arguments.nodes = kNodes;
+  arguments.leaf_place = {at.leaf_place};
+  arguments.treelet_place = {at.treelet_place};
+  arguments.treelet = {at.treelet_number};
+  arguments.needs_leaf = &has_leaf;
+  arguments.needs_treelet = &has_treelet;
+  kernels_.traversal().locate.run(arguments, memory_, rays, issued_);
+  const auto bring = [&](int pe, int place_at, MonoAddress array, const void* from, std::size_t size, int to,
+                         std::size_t bytes) {
+    MonoAddress place = 0;
+    read(pe, place_at, &place, sizeof(place));
+    if (place < array || place - array + bytes > size)
+      throw std::runtime_error("tree_search: a load from outside its array");
+    write(pe, to, static_cast<const char*>(from) + (place - array), bytes);
+  };
+  for (int pe = 0; pe < kPes; ++pe) {
+    if (has_leaf[pe])
+      bring(pe, at.leaf_place, kTriangles, scene.leaves.data(), scene.leaves.size() * sizeof(TriangleRecord),
+            at.leaf, std::size_t(scene.shape.leaf_records()) * sizeof(TriangleRecord));
+    if (has_treelet[pe])
+      bring(pe, at.treelet_place, kNodes, scene.nodes.data(), scene.nodes.size(), at.treelet,
+            std::size_t(scene.shape.treelet_bytes()));
+  }
+}
+
+LaneMask RaySearch::traverse(const SearchScene& scene, const Offsets& at, const LaneMask& rays,
+                             const LaneMask* has_leaf) {
+  LaneMask alive;
+  path_tracer::TraverseArguments arguments;
+  arguments.record = PolyPointer<TraversalRecord>(at.record);
+  arguments.leaf = PolyPointer<TriangleRecord>(at.leaf);
+  arguments.treelet = {at.treelet_number};
+  arguments.tree = {scene.shape, at.resident, at.treelet};
+  arguments.reach = scene.reach;
+  arguments.loaded_leaf = has_leaf;
+  arguments.alive = &alive;
+  kernels_.traversal().traverse[std::size_t(scene.shape.layout.format)].run(arguments, memory_, rays,
+                                                                            issued_);
+  turns_ += std::uint64_t(rays.count());
+  return alive;
+}
+
+void RaySearch::finish(const Offsets& at, const LaneMask& rays, std::vector<SearchHit>& hits) {
+  path_tracer::FinishArguments arguments;
+  arguments.record = PolyPointer<TraversalRecord>(at.record);
+  arguments.surfaces = kSurfaces;
+  arguments.hits = kHits;
+  arguments.surface_places = kSurfacePlaces;
+  arguments.hit = PolyPointer<HitRecord>(at.hit);
+  arguments.surface_place = {at.surface_place};
+  arguments.hit_to = {at.hit_to};
+  arguments.surface_place_to = {at.surface_place_to};
+  kernels_.traversal().finish.run(arguments, memory_, rays, issued_);
+  for (int pe = 0; pe < kPes; ++pe) {
+    if (!rays[pe]) continue;
+    MonoAddress to[2];
+    read(pe, at.hit_to, to, sizeof(MonoAddress));
+    read(pe, at.surface_place_to, to + 1, sizeof(MonoAddress));
+    const std::size_t slot = (to[0] - kHits) / sizeof(HitRecord);
+    if (to[1] != kSurfacePlaces + slot * sizeof(MonoAddress))
+      throw std::runtime_error("tree_search: two slots");
+    hits.at(slot) = hit_of(pe, at);
+    MonoAddress place = 0;
+    read(pe, at.surface_place, &place, sizeof(place));
+    if ((place == 0) != (hits[slot].record.hit == 0))
+      throw std::runtime_error("tree_search: hit and surface differ");
+  }
+}
+
+LaneMask RaySearch::move_on(const SearchScene& scene, const Offsets& at, const LaneMask& rays) {
+  const auto bytes = std::size_t(scene.shape.record_bytes());
+  std::vector<std::vector<char>> records;
+  for (int pe = 0; pe < kPes; ++pe) {
+    if (!rays[pe]) continue;
+    records.emplace_back(bytes);
+    read(pe, at.record, records.back().data(), bytes);
+  }
+  for (std::size_t i = 0; i < records.size(); ++i)
+    write(int((i + 1) % records.size()), at.record, records[i].data(), bytes);
+  return LaneMask::first(int(records.size()));
+}
+
+}  // namespace test_support

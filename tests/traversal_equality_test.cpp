@@ -1,0 +1,304 @@
+// Kernels that go through a tree against the one that tests every triangle: the same answer, to the last bit,
+// in every format of nodes and shape of tree, however short the stack, wherever rays go on.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "testbench/scene/generated_scene.hpp"
+#include "testbench/scene/mesh.hpp"
+#include "tests/support/meshes.hpp"
+#include "tests/support/test_rays.hpp"
+#include "tests/support/tree_search.hpp"
+
+namespace {
+
+using path_tracer::NodeFormat;
+using path_tracer::QueuedRay;
+using path_tracer::RayRecord;
+using path_tracer::TreeShape;
+using test_support::RaySearch;
+using test_support::search_scene;
+using test_support::SearchHit;
+using test_support::SearchScene;
+using test_support::TestRays;
+using testbench::Scene;
+using testbench::Triangle;
+
+std::vector<Triangle> scaled(std::vector<Triangle> triangles, double factor) {
+  for (Triangle& triangle : triangles)
+    for (glm::dvec3& vertex : triangle.vertex) vertex *= factor;
+  return triangles;
+}
+
+/// Rectangles across the axes, some side by side, some through each other; all boxes are flat.
+std::vector<Triangle> flats() {
+  std::vector<Triangle> triangles;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 40; ++i) {
+      glm::dvec3 corner(0.0), u(0.0), v(0.0);
+      corner[axis] = i / 8;
+      u[(axis + 1) % 3] = 1.0;
+      v[(axis + 2) % 3] = 1.0;
+      corner += u * double(i % 8) + v * double(i % 5);
+      triangles.push_back(test_support::triangle(corner, corner + u, corner + u + v));
+      triangles.push_back(test_support::triangle(corner, corner + u + v, corner + v));
+    }
+  return triangles;
+}
+
+/// One around the other, all about one point.
+std::vector<Triangle> nested() {
+  std::vector<Triangle> triangles;
+  for (const Triangle& triangle : test_support::soup(1, 0.0, 1.0, 9))
+    for (double size = 1.0; size > 1e-9; size *= 0.7) triangles.push_back(scaled({triangle}, size).front());
+  return triangles;
+}
+
+/// In one plane across no axis, one over the other.
+std::vector<Triangle> slanted() {
+  std::vector<Triangle> triangles = test_support::soup(60, 1.0, 0.5, 10);
+  const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
+  const glm::dvec3 v = glm::normalize(glm::cross(u, glm::dvec3(0.3, -1, 0.2)));
+  for (Triangle& triangle : triangles)
+    for (glm::dvec3& vertex : triangle.vertex) vertex = u * vertex.x + v * vertex.y;
+  return triangles;
+}
+
+/// A mesh, or as much of it as time allows: rays through one heap of needles or duplicates test all of them.
+std::vector<Triangle> some(test_support::Mesh mesh, std::size_t most) {
+  std::vector<Triangle> triangles = test_support::mesh(mesh);
+  if (triangles.size() > most) triangles.resize(most);
+  return triangles;
+}
+
+std::vector<Triangle> three_times(const std::vector<Triangle>& once) {
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < 3; ++i) triangles.insert(triangles.end(), once.begin(), once.end());
+  return triangles;
+}
+
+/// Lights that share edges, and coplanar triangles on them that share none.
+std::vector<Triangle> decals() {
+  std::vector<Triangle> triangles = slanted();
+  const glm::dvec3 u = triangles[0].vertex[0];
+  const glm::dvec3 v = triangles[1].vertex[1];
+  const glm::dvec3 middle = u * 0.1;
+  for (int i = 0; i < 3; ++i) {
+    const auto rim = [&](int k) { return middle + u * std::cos(2.1 * k) + v * std::sin(2.1 * k); };
+    triangles.push_back(test_support::triangle(middle, rim(i), rim(i + 1)));
+  }
+  return triangles;
+}
+
+std::vector<Triangle> generated(testbench::GeneratedScene kind) {
+  return testbench::generate_scene(kind, 400).triangles;
+}
+
+struct NamedMesh {
+  const char* name;
+  std::function<std::vector<Triangle>()> make;
+};
+
+std::vector<NamedMesh> meshes() {
+  using testbench::GeneratedScene;
+  using namespace test_support;
+  return {{"one", [] { return mesh(Mesh::one); }},
+          {"coplanar", [] { return mesh(Mesh::coplanar); }},
+          {"soup", [] { return some(Mesh::soup, 1000); }},
+          {"needles", [] { return some(Mesh::needles, 100); }},
+          {"duplicates", [] { return some(Mesh::duplicates, 50); }},
+          {"scales", [] { return mesh(Mesh::scales); }},
+          {"huge", [] { return scaled(some(Mesh::huge, 100), 1e-200); }},
+          {"tiny", [] { return scaled(some(Mesh::tiny, 100), 1e230); }},
+          {"large_triangles", [] { return soup(60, 1.0, 1.0, 11); }},
+          {"flats", flats},
+          {"nested", nested},
+          {"slanted", slanted},
+          {"threefold_soup", [] { return three_times(soup(40, 1.0, 0.3, 12)); }},
+          {"far_from_the_origin",
+           [] {
+             std::vector<Triangle> triangles = soup(100, 1.0, 0.2, 13);
+             for (Triangle& triangle : triangles)
+               for (glm::dvec3& vertex : triangle.vertex) vertex += glm::dvec3(1e6, -1e8, 3e7);
+             return triangles;
+           }},
+          {"blob", [] { return generated(GeneratedScene::blob); }},
+          {"sphere_flake", [] { return generated(GeneratedScene::sphere_flake); }},
+          {"stadium", [] { return generated(GeneratedScene::stadium); }},
+          {"long_needles", [] { return generated(GeneratedScene::needles); }}};
+}
+
+/// The last three triangles shine; those without area are dropped, as the loader does.
+Scene scene_of(std::vector<Triangle> triangles) {
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), testbench::is_degenerate),
+                  triangles.end());
+  Scene scene;
+  scene.name = "mesh";
+  scene.film = {4, 4};
+  scene.materials = {{"dark", glm::dvec3(0.5), glm::dvec3(0.0)},
+                     {"shining", glm::dvec3(0.0), glm::dvec3(1.0)}};
+  testbench::Box box;
+  for (Triangle& triangle : triangles) {
+    triangle.material = 0;
+    box.include(bounds_of(triangle));
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, triangles.size()); ++i)
+    triangles[triangles.size() - 1 - i].material = 1;
+  const glm::dvec3 size = box.upper - box.lower;
+  scene.camera.position = box.lower - 0.25 * std::max({size.x, size.y, size.z});
+  scene.triangles = std::move(triangles);
+  return scene;
+}
+
+/// Which triangles the light's own are; the scene's lights stand in the order of its triangles.
+std::vector<std::vector<std::size_t>> lights_of(const Scene& scene) {
+  std::vector<std::vector<std::size_t>> lights;
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i)
+    if (scene.triangles[i].material == 1) lights.push_back({i});
+  return lights;
+}
+
+/// All formats, leaves, treelets and resident pieces; stacks are tried of each.
+std::vector<TreeShape> shapes() {
+  std::vector<TreeShape> shapes;
+  for (const NodeFormat format : {NodeFormat::fp64, NodeFormat::fp32, NodeFormat::quantised8})
+    for (const int leaf_triangles : {1, 2, 4, 8})
+      for (const int treelet_nodes : {1, 4, 16})
+        for (const int resident_nodes : {1, 8})
+          shapes.push_back(
+              {{format, path_tracer::kTraversalWidth}, resident_nodes, treelet_nodes, leaf_triangles, 0});
+  return shapes;
+}
+
+std::string describe(const TreeShape& shape) {
+  return "format " + std::to_string(int(shape.layout.format)) + ", " + std::to_string(shape.leaf_triangles) +
+         " triangles a leaf, " + std::to_string(shape.treelet_nodes) + " nodes a treelet, " +
+         std::to_string(shape.resident_nodes) + " resident, stack of " + std::to_string(shape.stack_entries);
+}
+
+constexpr int kStacks[] = {0, 1, 2, 8, 32};
+
+class TraversalEquality : public testing::TestWithParam<NamedMesh> {
+ protected:
+  RaySearch search_{cn::widest_level()};
+};
+
+TEST_P(TraversalEquality, EveryRayHitsWhatBruteForceHits) {
+  const Scene scene = scene_of(GetParam().make());
+  TestRays source(scene, 19);
+  int hits = 0;
+  int rays_in_all = 0;
+  for (const TreeShape& shape : shapes()) {
+    SearchScene searched = search_scene(scene, shape);
+    for (int batch = 0; batch < 3; ++batch) {
+      std::vector<RayRecord> rays;
+      std::vector<QueuedRay> queued;
+      for (int i = 0; i < RaySearch::kPes; ++i) {
+        rays.push_back(source.ray(unsigned(rays_in_all + i) % TestRays::kKinds));
+        queued.push_back({rays.back(), 0, 0});
+      }
+      const std::vector<SearchHit> expected = search_.brute_force(searched, rays);
+      for (const int stack : kStacks) {
+        searched.shape.stack_entries = stack;
+        const std::vector<SearchHit> found = search_.through_tree(searched, queued, batch % 2 == 0);
+        for (std::size_t i = 0; i < rays.size(); ++i)
+          ASSERT_TRUE(same(found[i], expected[i])) << describe(searched.shape) << ": a ray hits "
+                                                   << found[i].number << " instead of " << expected[i].number;
+        for (const SearchHit& hit : found) hits += hit.number >= 0;
+        rays_in_all += int(found.size());
+      }
+    }
+  }
+  EXPECT_GT(rays_in_all, 60000);  // by eighteen meshes: more than a million
+  EXPECT_GT(hits, rays_in_all / 20);
+}
+
+/// A shadow ray need not say what is in its way; whether something is must be the same, and where the light
+/// was hit.
+void expect_the_same_lights_seen(const Scene& scene, RaySearch& search) {
+  const std::vector<std::vector<std::size_t>> lights = lights_of(scene);
+  TestRays source(scene, 29);
+  int lit = 0;
+  for (const TreeShape& shape : shapes()) {
+    if (shape.treelet_nodes > 4) continue;
+    SearchScene searched = search_scene(scene, shape);
+    std::vector<RayRecord> rays;
+    std::vector<QueuedRay> queued;
+    for (std::size_t i = 0; i < std::size_t(RaySearch::kPes); ++i) {
+      const std::size_t light = i % lights.size();
+      rays.push_back(i % 7 == 0 ? source.ray(6) : source.shadow_ray(lights[light]));
+      queued.push_back({rays.back(), 0, std::int32_t(light)});
+    }
+    const std::vector<SearchHit> expected = search.brute_force(searched, rays);
+    const auto sees = [&](const SearchHit& hit, std::size_t i) {
+      return hit.number >= 0 && source.face(hit.number) == rays[i].light_face;
+    };
+    for (const int stack : {0, 2, 8}) {
+      searched.shape.stack_entries = stack;
+      const std::vector<SearchHit> found = search.through_tree(searched, queued, stack == 2);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const bool is_segment = rays[i].light_face == path_tracer::kNoFace;
+        ASSERT_EQ(sees(found[i], i), sees(expected[i], i)) << describe(searched.shape) << ": ray " << i;
+        if (is_segment || sees(found[i], i)) {
+          ASSERT_TRUE(same(found[i], expected[i])) << describe(searched.shape) << ": ray " << i;
+        }
+        lit += !is_segment && sees(found[i], i);
+      }
+    }
+  }
+  EXPECT_GT(lit, 20);
+}
+
+TEST_P(TraversalEquality, EveryShadowRaySeesTheLightThatBruteForceSees) {
+  expect_the_same_lights_seen(scene_of(GetParam().make()), search_);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, TraversalEquality, testing::ValuesIn(meshes()),
+                         [](const auto& suite) { return std::string(suite.param.name); });
+
+/// Does not hold yet: a ray towards an edge that two triangles of one face share hits both. A decal that lies
+/// between the two, by rounding, ends it before the nearer one is found, which brute force sees.
+TEST(TraversalOfLights, DISABLED_ThatShareEdgesUnderADecalAreSeenAsByBruteForce) {
+  RaySearch search(cn::widest_level());
+  expect_the_same_lights_seen(scene_of(decals()), search);
+}
+
+/// Rays that find nothing, from a root that leads nowhere.
+TEST(TraversalOfNothing, HitsNothing) {
+  RaySearch search(cn::widest_level());
+  for (TreeShape shape : shapes()) {
+    shape.stack_entries = 2;
+    const SearchScene scene = test_support::empty_search_scene(shape);
+    RayRecord ray;
+    ray.direction = {0, 1, 0};
+    const auto expected = search.brute_force(scene, {ray, ray});
+    const auto found = search.through_tree(scene, {{ray, 0, 0}, {ray, 0, 0}}, false);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(found[i].number, -1);
+      EXPECT_TRUE(same(found[i], expected[i]));
+    }
+  }
+}
+
+/// The reason for the tree: of 2000 triangles a ray tests few.
+TEST(TraversalTurns, AreFewWhereTreeletsAndStacksAreLarge) {
+  const Scene scene = scene_of(test_support::mesh(test_support::Mesh::soup));
+  TestRays source(scene, 5);
+  std::vector<QueuedRay> rays;
+  for (int i = 0; i < RaySearch::kPes; ++i) rays.push_back({source.ray(0), 0, 0});
+  const auto turns = [&](int treelet_nodes, int stack_entries) {
+    RaySearch search(cn::widest_level());
+    search.through_tree(search_scene(scene, {{NodeFormat::fp32, 4}, 1, treelet_nodes, 2, stack_entries}),
+                        rays, false);
+    return double(search.turns()) / double(rays.size());
+  };
+  const double with_both = turns(16, 32);
+  EXPECT_LT(with_both, 30);
+  EXPECT_LT(with_both, turns(1, 32));
+  EXPECT_LT(with_both, turns(16, 0));
+}
+
+}  // namespace

@@ -15,9 +15,21 @@ const char* light_sampling_name(path_tracer::LightSampling sampling) {
   return sampling == path_tracer::LightSampling::solid_angle ? "solid_angle" : "area";
 }
 
-const char* traversal_name(path_tracer::Traversal traversal) {
-  static constexpr const char* kNames[] = {"brute_force", "temporary_bin", "refill", "lock_step"};
-  return kNames[std::size_t(traversal)];
+const std::vector<std::string>& traversal_names() {
+  static const std::vector<std::string> names = {"brute_force", "temporary_bin", "refill", "lock_step",
+                                                 "packets"};
+  return names;
+}
+
+const std::string& traversal_name(path_tracer::Traversal traversal) {
+  return traversal_names().at(std::size_t(traversal));
+}
+
+std::map<std::string, path_tracer::Traversal> traversals_by_name() {
+  std::map<std::string, path_tracer::Traversal> traversals;
+  for (std::size_t i = 0; i < traversal_names().size(); ++i)
+    traversals[traversal_names()[i]] = path_tracer::Traversal(i);
+  return traversals;
 }
 
 const char* node_format_name(path_tracer::NodeFormat format) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <map>
+#include <string>
+#include <vector>
+
 #include "firmware/path_tracer/program.hpp"
 
 namespace testbench {
@@ -8,7 +12,9 @@ namespace testbench {
 const char* program_name(path_tracer::Program program);
 const char* sampler_name(path_tracer::Sampler sampler);
 const char* light_sampling_name(path_tracer::LightSampling sampling);
-const char* traversal_name(path_tracer::Traversal traversal);
+const std::string& traversal_name(path_tracer::Traversal traversal);
+const std::vector<std::string>& traversal_names();
+std::map<std::string, path_tracer::Traversal> traversals_by_name();
 const char* node_format_name(path_tracer::NodeFormat format);
 
 }  // namespace testbench

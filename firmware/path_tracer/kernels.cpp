@@ -9,6 +9,7 @@
 namespace path_tracer {
 
 const TraversalKernels& TRAVERSAL_KERNELS();
+const PacketKernels& PACKET_KERNELS();
 
 namespace {
 
@@ -286,6 +287,7 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<ListArguments, list>("list"),
       cn::kernel<FoldArguments, fold>("fold"),
       TRAVERSAL_KERNELS,
+      PACKET_KERNELS,
   };
   return table;
 }

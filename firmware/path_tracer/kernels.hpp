@@ -133,6 +133,8 @@ struct FoldArguments {
   PolyPointer<FoldRecord> flushed;       ///< the same, for paths that go on
 };
 
+struct PacketKernels;
+
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
   cn::Kernel<ScatterArguments> scatter;
@@ -142,7 +144,8 @@ struct Kernels {
   cn::Kernel<FinishedPlaceArguments> finished_place;
   cn::Kernel<ListArguments> list;
   cn::Kernel<FoldArguments> fold;
-  const TraversalKernels& (*traversal)();  ///< of the same level
+  const TraversalKernels& (*traversal)();  ///< of the same level, as the next
+  const PacketKernels& (*packet)();
 };
 
 const Kernels& kernels(Level level);

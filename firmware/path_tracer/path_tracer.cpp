@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/path_tracer/packet_stage.hpp"
 #include "firmware/path_tracer/refill.hpp"
 #include "firmware/path_tracer/temporary_bin.hpp"
 
@@ -73,6 +74,7 @@ std::optional<TreeContext> make_tree_context(cn::Machine& machine, const Layout&
 std::unique_ptr<TreeTraversal> make_tree(const StageContext& context, TreeContext& tree) {
   if (context.config.traversal == Traversal::temporary_bin)
     return std::make_unique<TemporaryBinTraversal>(context, tree);
+  if (context.config.traversal == Traversal::packets) return std::make_unique<PacketTraversal>(context, tree);
   return std::make_unique<RefillTraversal>(context, tree);
 }
 

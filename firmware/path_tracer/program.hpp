@@ -37,6 +37,8 @@ enum class Traversal : std::uint8_t {
   temporary_bin,  ///< rays wait in a bin between two pieces (paper, section 5)
   refill,         ///< rays stay in their PE; idle PEs load new ones
   lock_step,      ///< the same without: new rays are loaded when all PEs are idle
+  /// A tree that the control unit walks through for a block of rays at once.
+  packets,
 };
 
 inline constexpr int kMaxBuffers = 8;

@@ -2,28 +2,12 @@
 
 #include "firmware/path_tracer/traversal_kernels.hpp"
 
+#include "firmware/path_tracer/nearest_face.hpp"
 #include "firmware/path_tracer/places.hpp"
 #include "firmware/path_tracer/traversal.hpp"
-#include "firmware/path_tracer/triangle.hpp"
 
 namespace path_tracer {
 namespace {
-
-RayOperands ray_of(const PolyPointer<TraversalRecord>& record) {
-  return {record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction),
-          record.get(&TraversalRecord::left_face)};
-}
-
-/// A search that keeps the face of what it finds, too.
-struct NearestFace : Nearest {
-  poly<std::int32_t> face = kNoFace;
-
-  template <class Triangle>
-  void take(const Crossing& crossing, const Triangle& triangle) {
-    Nearest::take(crossing, triangle);
-    face = triangle.face;
-  }
-};
 
 /// A leaf that each PE has its own of.
 struct PolyTriangles {

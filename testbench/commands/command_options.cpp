@@ -152,17 +152,11 @@ void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program
 
 void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& program) {
   using path_tracer::NodeFormat;
-  using path_tracer::Traversal;
   command
-      .add_option(
-          "--traversal", chosen_,
-          "How rays find triangles: brute_force, temporary_bin, refill or lock_step; by default what the "
-          "scene and the chip make fastest")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Traversal>{{"brute_force", Traversal::brute_force},
-                                           {"temporary_bin", Traversal::temporary_bin},
-                                           {"refill", Traversal::refill},
-                                           {"lock_step", Traversal::lock_step}}));
+      .add_option("--traversal", chosen_,
+                  "How rays find triangles, by default what the scene and the chip make fastest: " +
+                      CLI::detail::join(traversal_names(), ", "))
+      ->transform(CLI::CheckedTransformer(traversals_by_name()));
   path_tracer::TreeShape& tree = program.tree;
   tree.resident_nodes = kAsManyAsFit;
   command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")

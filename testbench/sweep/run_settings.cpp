@@ -78,10 +78,6 @@ const Values& timing_names() {
   return names;
 }
 
-const Values& traversal_names() {
-  static const Values names = {"brute_force", "temporary_bin", "refill", "lock_step"};
-  return names;
-}
 const Values& node_format_names() {
   static const Values names = {"fp64", "fp32", "quantised8"};
   return names;

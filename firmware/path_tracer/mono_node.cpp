@@ -1,0 +1,64 @@
+#include "firmware/path_tracer/mono_node.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "firmware/cn/machine.hpp"
+
+namespace path_tracer {
+namespace {
+
+constexpr int kAxes = 3;
+
+// Instructions of the control unit (assumed). Loads of what the kernel takes as an operand are charged there,
+// so that these are what stands between: a number of 4 bytes is converted; one of 8 bits is converted,
+// multiplied and added to; a power of two is made of its exponent in three.
+constexpr std::uint64_t kNodeInstructions = 6;  // its address, the references
+constexpr std::uint64_t kCoordinates = 2 * kAxes * kTraversalWidth;
+constexpr std::uint64_t kFloatInstructions = kCoordinates;
+constexpr std::uint64_t kQuantisedInstructions = 3 * kCoordinates + 3 * kAxes;
+
+template <class T>
+T load(const unsigned char* node, int offset) {
+  T value;
+  std::memcpy(&value, node + offset, sizeof(value));
+  return value;
+}
+
+std::uint64_t decoding_instructions(NodeFormat format) {
+  if (format == NodeFormat::fp64) return kNodeInstructions;
+  return kNodeInstructions + (format == NodeFormat::fp32 ? kFloatInstructions : kQuantisedInstructions);
+}
+
+double coordinate(const unsigned char* node, const NodeLayout& layout, int component, int child) {
+  const int offset = layout.coordinate_offset(component, child);
+  if (layout.format == NodeFormat::fp64) return load<double>(node, offset);
+  if (layout.format == NodeFormat::fp32) return double(load<float>(node, offset));
+  const auto frame = load<QuantisedFrame>(node, 0);
+  const int axis = component % kAxes;
+  const double steps = load<std::uint8_t>(node, offset);
+  return std::ldexp(steps, frame.exponent[axis]) + frame.origin[axis];
+}
+
+}  // namespace
+
+MonoNode read_node(cn::Machine& machine, cn::MonoPointer<std::uint64_t> nodes, const NodeLayout& layout,
+                   std::int32_t slot) {
+  const auto words = static_cast<std::size_t>(layout.node_bytes()) / sizeof(std::uint64_t);
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(
+      machine.read_mono(nodes + static_cast<std::uint64_t>(slot) * words, words));
+  machine.issue_mono(decoding_instructions(layout.format));
+  MonoNode node;
+  for (int child = 0; child < kTraversalWidth; ++child) {
+    const auto i = static_cast<std::size_t>(child);
+    for (int axis = 0; axis < kAxes; ++axis) {
+      node.lower[axis][i] = coordinate(bytes, layout, axis, child);
+      node.upper[axis][i] = coordinate(bytes, layout, kAxes + axis, child);
+    }
+    node.reference[child] = load<std::uint32_t>(bytes, layout.reference_offset(child));
+    if (node.reference[child] != PackedReference::kNowhere) node.children = child + 1;
+  }
+  return node;
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "firmware/cn/mono_memory.hpp"
+#include "firmware/cn/poly4.hpp"
+#include "firmware/path_tracer/traversal_record.hpp"
+
+namespace cn {
+class Machine;
+}
+
+/// Nodes as the control unit reads them, for all PEs at once.
+namespace path_tracer {
+
+/// Boxes of a node's children, in double precision whatever the format: the same numbers as NodeReader makes
+/// of them in a PE.
+struct MonoNode {
+  cn::mono4<double> lower[3];  ///< by axis
+  cn::mono4<double> upper[3];
+  std::uint32_t reference[kTraversalWidth];
+  int children = 0;  ///< these come first
+};
+
+/// Through the data cache; what decoding takes is charged.
+MonoNode read_node(cn::Machine& machine, cn::MonoPointer<std::uint64_t> nodes, const NodeLayout& layout,
+                   std::int32_t slot);
+
+}  // namespace path_tracer

@@ -1,0 +1,171 @@
+#include "firmware/path_tracer/packet_stage.hpp"
+
+#include <algorithm>
+
+namespace path_tracer {
+namespace {
+
+// Instructions of the control unit (assumed): the stack's two words and its pointer, the parts of a
+// reference, and a branch; the order of four children is a network of five comparisons and what they move.
+constexpr std::uint64_t kPushInstructions = 5;
+constexpr std::uint64_t kPopInstructions = 8;
+constexpr std::uint64_t kOrderInstructions = 20;
+
+int bits_of(int numbers) {
+  int bits = 0;
+  while (((numbers - 1) >> bits) > 0) ++bits;
+  return bits;
+}
+
+}  // namespace
+
+PacketStage::PacketStage(const StageContext& context, TreeContext& tree)
+    : TreeStage(context, tree), packet_kernels_(context.kernels.packet()) {
+  cn::PolyMemory& memory = context.machine.poly_memory();
+  BufferCutter cutter(memory.allocate("packet", int{sizeof(TraversalRecord)} + int{sizeof(PacketRecord)}));
+  record_ = cutter.take<TraversalRecord>();
+  packet_ = cutter.take<PacketRecord>();
+  keys_ = PacketKeys(memory.allocate("packet's keys", PacketKeys::kBytes));
+}
+
+LaneMask PacketStage::rays_of(int block) const {
+  const int first = block * num_pes();
+  return LaneMask::first(std::min(num_pes(), context_.queue->rays() - first));
+}
+
+void PacketStage::load(std::uint64_t step, int block) {
+  context_.saves.wait_until(context_.queue->last_writer());
+  const LaneMask rays = rays_of(block);
+  context_.loads.copy_m2p(step, kNoBlock, loads(step).ray.span(),
+                          cn::MonoPlaces::array(context_.queue->next_place(), sizeof(QueuedRay)), rays);
+  context_.queue->take(rays.count());
+}
+
+void PacketStage::process(std::uint64_t step, int block) {
+  rays_ = rays_of(block);
+  enter(step, record_, rays_);
+  count_pass(0, rays_);
+  test_lights(begin(step));
+  walk();
+  finish(step, record_, rays_);
+}
+
+/// Returns the shadow rays.
+LaneMask PacketStage::begin(std::uint64_t step) {
+  LaneMask seeks_light;
+  BeginPacketArguments arguments;
+  arguments.ray = loads(step).ray;
+  arguments.record = record_;
+  arguments.packet = packet_;
+  arguments.keys = keys_;
+  arguments.seeks_light = &seeks_light;
+  context_.machine.run(packet_kernels_.begin, arguments, rays_);
+  return seeks_light;
+}
+
+/// Light by light: a block has few of them, and their triangles as mono operands cost no PE a load.
+void PacketStage::test_lights(LaneMask seeks_light) {
+  while (context_.machine.count(seeks_light) > 0) {
+    const std::int32_t light = least_light(seeks_light);
+    const LaneMask rays = rays_with_light(light, seeks_light);
+    test_leaf(context_.layout.triangle_count + light * kLightRun, kLightRun, rays);
+    seeks_light = seeks_light.without(rays);
+  }
+}
+
+std::int32_t PacketStage::least_light(const LaneMask& rays) {
+  std::int32_t least = context_.layout.light_count;
+  LeastArguments arguments;
+  arguments.value = packet_.field(&PacketRecord::light);
+  arguments.bits = bits_of(context_.layout.light_count);
+  arguments.least = &least;
+  context_.machine.run(packet_kernels_.least, arguments, rays);
+  return least;
+}
+
+LaneMask PacketStage::rays_with_light(std::int32_t light, const LaneMask& rays) {
+  LaneMask equal;
+  context_.machine.run(packet_kernels_.equal,
+                       EqualArguments{packet_.field(&PacketRecord::light), light, &equal}, rays);
+  return equal;
+}
+
+void PacketStage::walk() {
+  stack_.assign(1, {{0, 0}, 0, PacketKeys::kRoot});
+  while (!stack_.empty()) {
+    const Entry entry = stack_.back();
+    stack_.pop_back();
+    context_.machine.issue_mono(kPopInstructions);
+    const LaneMask rays = rays_that_want(entry);
+    if (context_.machine.count(rays) == 0) continue;
+    if (entry.reference.count > 0) {
+      test_leaf(entry.reference.first, entry.reference.count, rays);
+    } else {
+      visit(entry, rays);
+    }
+  }
+}
+
+/// A ray's limit may have come down since its key was made.
+LaneMask PacketStage::rays_that_want(const Entry& entry) {
+  LaneMask wanting;
+  WantArguments arguments;
+  arguments.packet = packet_;
+  arguments.keys = keys_;
+  arguments.place = entry.place;
+  arguments.is_node = entry.reference.count == 0;
+  arguments.level = entry.level;
+  arguments.wanting = &wanting;
+  context_.machine.run(packet_kernels_.want, arguments, rays_);
+  return wanting;
+}
+
+void PacketStage::visit(const Entry& entry, const LaneMask& rays) {
+  const MonoNode node =
+      read_node(context_.machine, context_.layout.nodes, tree_.tree.shape.layout, entry.reference.first);
+  LaneMask enters_first[kTraversalWidth];
+  VisitArguments arguments;
+  arguments.record = record_;
+  arguments.packet = packet_;
+  arguments.node = &node;
+  arguments.keys = keys_;
+  arguments.level = entry.level;
+  arguments.enters_first = enters_first;
+  context_.machine.run(packet_kernels_.visit, arguments, rays);
+  push_children(node, entry.level, enters_first);
+}
+
+/// In the order in which most rays want them: what most enter first comes first.
+void PacketStage::push_children(const MonoNode& node, int level, const LaneMask* enters_first) {
+  int votes[kTraversalWidth] = {};
+  int order[kTraversalWidth] = {};
+  for (int i = 0; i < node.children; ++i) {
+    votes[i] = context_.machine.count(enters_first[i]);
+    order[i] = i;
+  }
+  context_.machine.issue_mono(kOrderInstructions + kPushInstructions * std::uint64_t(node.children));
+  std::stable_sort(order, order + node.children, [&](int a, int b) { return votes[a] < votes[b]; });
+  for (int i = 0; i < node.children; ++i) {
+    const int child = order[i];
+    stack_.push_back(
+        {PackedReference::unpack(node.reference[child]), level + 1, PacketKeys::place(level, child)});
+  }
+}
+
+void PacketStage::test_leaf(std::int32_t first_triangle, std::int32_t count, const LaneMask& rays) {
+  TestLeafArguments arguments;
+  arguments.record = record_;
+  arguments.packet = packet_;
+  arguments.triangles =
+      context_.machine.read_mono(context_.layout.triangles + static_cast<std::uint64_t>(first_triangle),
+                                 static_cast<std::size_t>(count));
+  arguments.count = count;
+  arguments.reach = tree_.reach;
+  context_.machine.run(packet_kernels_.test_leaf, arguments, rays);
+}
+
+void PacketTraversal::plan_first(const Plan& plan) {
+  for (int block = 0; block * num_pes_ < queue_.rays(); ++block) plan(stage_, block);
+}
+
+}  // namespace path_tracer

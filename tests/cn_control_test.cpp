@@ -177,8 +177,8 @@ TEST_F(CnControl, RegionsInALoopOfTheControlUnitAreNodesOfTheirOwn) {
   const auto& regions = issue_tree.root().regions;
   ASSERT_EQ(regions.size(), 3u);
   EXPECT_TRUE(regions[0].empty());
-  EXPECT_EQ(regions[1][0].enabled_lanes, 8u);
-  EXPECT_EQ(regions[2][0].enabled_lanes, 16u);
+  EXPECT_EQ(regions[1][0]->enabled_lanes, 8u);
+  EXPECT_EQ(regions[2][0]->enabled_lanes, 16u);
 }
 
 TEST_F(CnControl, NodesCountTheLanesThatEnterThem) {
@@ -190,10 +190,10 @@ TEST_F(CnControl, NodesCountTheLanesThatEnterThem) {
   EXPECT_EQ(root.enabled_lanes, 15u);
   const IssueTree::Region& passes = root.regions.at(0);
   ASSERT_EQ(passes.size(), 2u);
-  EXPECT_EQ(passes[0].enabled_lanes, 15u);
-  EXPECT_EQ(passes[0].regions.at(0).at(0).enabled_lanes, 8u);
-  EXPECT_EQ(passes[1].enabled_lanes, 8u);
-  EXPECT_FALSE(passes[1].regions.size() > 0 && passes[1].regions[0][0].reached);
+  EXPECT_EQ(passes[0]->enabled_lanes, 15u);
+  EXPECT_EQ(passes[0]->regions.at(0).at(0)->enabled_lanes, 8u);
+  EXPECT_EQ(passes[1]->enabled_lanes, 8u);
+  EXPECT_FALSE(passes[1]->regions.size() > 0 && passes[1]->regions[0][0]->reached);
 }
 
 TEST_F(CnControl, AKernelWithoutPesRunsNothing) {

@@ -32,6 +32,12 @@ Record record(const MonoImage& image, cn::MonoPointer<Record> first, int index =
   return result;
 }
 
+path_tracer::ProgramConfig with_tree() {
+  path_tracer::ProgramConfig config;
+  config.traversal = path_tracer::Traversal::refill;
+  return config;
+}
+
 /// Two lights of areas 2 and 1 and of radiances 3 and 12 (sums of channels), and a dark triangle between
 /// them.
 Scene three_triangles() {
@@ -63,7 +69,10 @@ void expect_triangle(const TriangleRecord& record, const Scene& scene, int numbe
   EXPECT_EQ(vector(record.vertex), triangle.vertex[0]);
   EXPECT_EQ(vector(record.edge1), (triangle.vertex[1] - triangle.vertex[0]) * scale);
   EXPECT_EQ(vector(record.edge2), (triangle.vertex[2] - triangle.vertex[0]) * scale);
-  EXPECT_EQ(vector(record.back), testbench::area_normal(triangle) * -scale);
+  // Made in extended precision.
+  const double rounding =
+      1e-15 * glm::length(vector(record.edge1)) * glm::length(vector(record.edge2)) / scale;
+  EXPECT_LT(glm::length(vector(record.back) + testbench::area_normal(triangle) * scale), rounding + 1e-300);
   EXPECT_EQ(record.face, number);
   EXPECT_EQ(record.number, number);
 }
@@ -83,6 +92,39 @@ TEST(MonoImage, HoldsTrianglesAndSurfacesInTheScenesOrder) {
   }
   EXPECT_EQ(vector(record(image, image.layout.surfaces, 1).normal), glm::dvec3(0, 0, 1));
   EXPECT_EQ(vector(record(image, image.layout.surfaces, 2).normal), glm::dvec3(0, 1, 0));
+}
+
+/// Leaf by leaf; each light's own once more behind them.
+TEST(MonoImage, WithATreeHoldsEachTriangleOnceAndThoseOfLightsAgain) {
+  const Scene scene = test_support::triangle_soup(60, 3, {4, 4});
+  const MonoImage image = make_mono_image(scene, 96, with_tree());
+  ASSERT_EQ(image.layout.triangle_count, 60);
+  ASSERT_GT(image.layout.light_count, 1);
+  std::vector<int> met(60, 0);
+  for (int i = 0; i < 60; ++i) {
+    const auto in_image = record(image, image.layout.triangles, i);
+    expect_triangle(in_image, scene, in_image.number);
+    ++met.at(std::size_t(in_image.number));
+  }
+  EXPECT_EQ(met, std::vector<int>(60, 1));
+  for (int light = 0; light < image.layout.light_count; ++light) {
+    const auto of_light = record(image, image.layout.lights, light);
+    for (int i = 0; i < path_tracer::kLightRun; ++i) {
+      const auto in_run = record(image, image.layout.triangles, 60 + light * path_tracer::kLightRun + i);
+      EXPECT_EQ(in_run.face, of_light.face);
+      EXPECT_EQ(vector(in_run.vertex), vector(of_light.vertex));
+    }
+  }
+}
+
+/// No ray starts farther from a vertex: neither at the camera nor on a triangle.
+TEST(MonoImage, ReachSpansSceneAndCamera) {
+  Scene scene = three_triangles();
+  scene.camera.position = {100, 0, 0};
+  const double reach = make_mono_image(scene, 96, {}).layout.reach;
+  EXPECT_GT(reach, 1.1 * 100);
+  EXPECT_LT(reach, 1.2 * 101);
+  EXPECT_EQ(make_mono_image(scene, 8, with_tree()).layout.reach, reach);
 }
 
 TEST(MonoImage, LightsAreChosenByTheirPower) {
@@ -144,6 +186,18 @@ TEST(MonoImage, HalvesOfARectangleAreOneLightWhenSampledBySolidAngle) {
       EXPECT_EQ(found.shape, std::int32_t(path_tracer::LightShape::triangle));
     }
   }
+}
+
+TEST(MonoImage, WithATreeARectangleKeepsBothItsTriangles) {
+  path_tracer::ProgramConfig config = with_tree();
+  config.light_sampling = path_tracer::LightSampling::solid_angle;
+  const Scene scene = lights_of_all_shapes();
+  const MonoImage image = make_mono_image(scene, 96, config);
+  ASSERT_EQ(image.layout.light_count, 4);
+  const int first = image.layout.triangle_count;
+  const int expected[] = {0, 1, 2, 2, 3, 3, 4, 4};
+  for (int i = 0; i < 8; ++i)
+    EXPECT_EQ(record(image, image.layout.triangles, first + i).number, expected[i]) << i;
 }
 
 TEST(MonoImage, TrianglesThatAreNoHalvesStayApart) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +71,45 @@ TEST(ProgramConfigTest, ErrorsNameArgumentValueAndWhatIsAllowed) {
     EXPECT_EQ(error_of(with(&ProgramConfig::max_survival, survival)), "largest survival probability: found " +
                                                                           std::to_string(survival) +
                                                                           ", allowed is above 0 and below 1");
+}
+
+/// The message for a tree of that shape.
+std::string error_of(const path_tracer::TreeShape& tree) {
+  ProgramConfig config;
+  config.tree = tree;
+  EXPECT_EQ(error_of(config), "") << "brute force uses no tree";
+  config.traversal = path_tracer::Traversal::temporary_bin;
+  return error_of(config);
+}
+
+template <class T>
+path_tracer::TreeShape tree_with(T path_tracer::TreeShape::*member, T value) {
+  path_tracer::TreeShape tree;
+  tree.*member = value;
+  return tree;
+}
+
+TEST(ProgramConfigTest, ShapesOfTreesAreCheckedWhereThereIsOne) {
+  using path_tracer::TreeShape;
+  EXPECT_EQ(error_of(TreeShape{}), "");
+  for (const int entries : {0, 1, 2, 16, 32})
+    EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, entries)), "") << entries;
+  EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, 3)),
+            "entries of the short stack: found 3, allowed is 0 or a power of two up to 32");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, 64)),
+            "entries of the short stack: found 64, allowed is 0 to 32");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, -1)),
+            "entries of the short stack: found -1, allowed is 0 to 32");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::leaf_triangles, 0)),
+            "triangles a leaf: found 0, allowed is 1 to 8");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::leaf_triangles, 9)),
+            "triangles a leaf: found 9, allowed is 1 to 8");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::treelet_nodes, 0)),
+            "nodes a treelet: found 0, allowed is 1 to 1024");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::resident_nodes, 1025)),
+            "resident nodes: found 1025, allowed is 1 to 1024");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::layout, {path_tracer::NodeFormat::fp64, 8})),
+            "children a node: found 8, allowed is 4 to 4");
 }
 
 TEST(ProgramConfigTest, BuffersFollowN) {
@@ -163,6 +203,37 @@ TEST(LayoutTest, RegionsAreAlignedApartAndWithinTheirParts) {
       }
     }
   }
+}
+
+/// By name, in the order in which they lie.
+TEST(LayoutTest, TreesAddRegionsOfTheirOwn) {
+  ProgramConfig config;
+  config.traversal = path_tracer::Traversal::temporary_bin;
+  config.tree.leaf_triangles = 4;
+  const Layout layout = make_layout({37, 5, 11}, 96, config);
+  const auto slots = 96 * std::uint64_t(config.bin_blocks);
+  std::map<std::string, std::uint64_t> bytes;
+  std::uint64_t end = 0;
+  for (const Layout::Region& r : layout.regions) {
+    EXPECT_GE(r.first, end) << r.name;
+    EXPECT_EQ(r.first % 64, 0u) << r.name;
+    end = r.first + r.bytes;
+    bytes[r.name] = r.bytes;
+  }
+  EXPECT_LE(end, layout.total_bytes);
+  EXPECT_EQ(layout.triangle_count, 37);
+  // Two triangles a light behind the scene's, and room for a whole leaf behind the last.
+  EXPECT_EQ(bytes["triangles"], (37 + 2 * 5 + 4) * sizeof(path_tracer::TriangleRecord));
+  EXPECT_EQ(bytes["surfaces"], 37 * sizeof(path_tracer::SurfaceRecord));
+  EXPECT_EQ(bytes["nodes"], 11u * std::uint64_t(config.tree.layout.node_bytes()));
+  EXPECT_LE(layout.nodes.address + bytes["nodes"], layout.scene_bytes);
+  EXPECT_EQ(bytes["ray bin"], slots * sizeof(path_tracer::QueuedRay));
+  EXPECT_EQ(bytes["surface place bin"], slots * sizeof(cn::MonoAddress));
+  EXPECT_EQ(bytes["traversal bin"], 96 * std::uint64_t(path_tracer::traversal_bin_blocks(config)) *
+                                        std::uint64_t(config.tree.record_bytes()));
+  config.traversal = path_tracer::Traversal::refill;
+  for (const Layout::Region& r : make_layout({37, 5, 11}, 96, config).regions)
+    EXPECT_STRNE(r.name, "traversal bin") << "rays stay in their PE";
 }
 
 /// A program set up on a machine of its own; nothing runs.

@@ -31,6 +31,7 @@ std::optional<int> TraversalBin::take_rest() {
 }
 
 void TraversalBin::append(int rays, std::uint64_t step, std::size_t pass) {
+  if (rays == 0) return;  // nobody need wait for that step
   if (tail_ == head_) passes_.clear();
   if (passes_.empty() || passes_.back().pass != pass + 1) passes_.push_back({tail_, pass + 1});
   const auto pes = std::uint64_t(num_pes_);

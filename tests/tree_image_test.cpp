@@ -1,0 +1,120 @@
+#include "testbench/bvh/tree_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "testbench/bvh/node_format.hpp"
+#include "testbench/error.hpp"
+#include "tests/support/meshes.hpp"
+
+namespace {
+
+using path_tracer::ChildReference;
+using path_tracer::kMaxTreeLevels;
+using path_tracer::NodeFormat;
+using path_tracer::TreeShape;
+using testbench::Box;
+using testbench::make_tree_image;
+using testbench::TreeImage;
+
+std::vector<Box> boxes_of(const std::vector<testbench::Triangle>& triangles) {
+  std::vector<Box> boxes;
+  for (const testbench::Triangle& triangle : triangles) boxes.push_back(bounds_of(triangle));
+  return boxes;
+}
+
+Box point(double x, double y, double z) {
+  Box box;
+  box.include(glm::dvec3(x, y, z));
+  return box;
+}
+
+class TreeImageOf : public testing::TestWithParam<test_support::Mesh> {};
+
+/// From slot 0 every triangle is met once, in a box that contains its own, within the levels that are told.
+TEST_P(TreeImageOf, LeadsToEveryTriangleInsideItsBoxes) {
+  const std::vector<Box> boxes = boxes_of(test_support::mesh(GetParam()));
+  for (const NodeFormat format : {NodeFormat::fp64, NodeFormat::fp32, NodeFormat::quantised8}) {
+    const TreeShape shape{{format, path_tracer::kTraversalWidth}, 5, 3, 2, 8};
+    const TreeImage image = make_tree_image(boxes, shape);
+    const int node_bytes = shape.layout.node_bytes();
+    ASSERT_EQ(image.nodes.size(), std::size_t(image.slots) * std::size_t(node_bytes));
+    ASSERT_EQ((image.slots - shape.resident_nodes) % shape.treelet_nodes, 0);
+    std::vector<int> met(boxes.size(), 0);
+    int deepest = 0;
+    struct Place {
+      std::int32_t slot;
+      int level;
+    };
+    std::vector<Place> open{{0, 1}};
+    while (!open.empty()) {
+      const Place place = open.back();
+      open.pop_back();
+      deepest = std::max(deepest, place.level);
+      const std::uint8_t* const node = image.nodes.data() + place.slot * node_bytes;
+      for (int i = 0; i < path_tracer::kTraversalWidth; ++i) {
+        const ChildReference child = testbench::decode_reference(node, shape.layout, i);
+        const Box box = testbench::decode_box(node, shape.layout, i);
+        if (child.count == 0) open.push_back({child.first, place.level + 1});
+        ASSERT_LE(child.count, shape.leaf_triangles);
+        for (int t = 0; t < child.count; ++t) {
+          const auto triangle = std::size_t(image.triangles.at(std::size_t(child.first + t)));
+          ++met.at(triangle);
+          EXPECT_TRUE(box.contains(boxes[triangle]));
+        }
+      }
+    }
+    EXPECT_EQ(std::count(met.begin(), met.end(), 1), std::ptrdiff_t(met.size()));
+    EXPECT_EQ(deepest, image.levels);
+    EXPECT_LE(image.levels, kMaxTreeLevels);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, TreeImageOf, testing::ValuesIn(test_support::kMeshes),
+                         [](const auto& suite) { return test_support::name_of(suite.param); });
+
+TEST(TreeImage, OfNothingIsARootThatLeadsNowhere) {
+  const TreeShape shape;
+  const TreeImage image = make_tree_image({}, shape);
+  EXPECT_TRUE(image.triangles.empty());
+  EXPECT_EQ(image.slots, shape.resident_nodes);
+  for (int i = 0; i < path_tracer::kTraversalWidth; ++i)
+    EXPECT_EQ(testbench::decode_reference(image.nodes.data(), shape.layout, i).count,
+              ChildReference::kNowhere);
+}
+
+/// One clump, and points on each axis each a 32nd as far out as the one before: the heuristic would take off
+/// a few a level.
+std::vector<Box> clump_and_outliers(int clump) {
+  std::vector<Box> boxes(std::size_t(clump), point(0, 0, 0));
+  double distance = 1.0;
+  for (int i = 0; i < 25; ++i, distance /= 40) {
+    boxes.push_back(point(distance, 0, 0));
+    boxes.push_back(point(0, distance, 0));
+    boxes.push_back(point(0, 0, distance));
+  }
+  return boxes;
+}
+
+TEST(TreeImage, KeepsToTheLevelsThatARayCanFollow) {
+  TreeShape shape;
+  shape.leaf_triangles = 1;
+  const TreeImage image = make_tree_image(clump_and_outliers(60000), shape);
+  EXPECT_GT(image.levels, kMaxTreeLevels - 4) << "a scene that is no challenge";
+  EXPECT_LE(image.levels, kMaxTreeLevels);
+}
+
+TEST(TreeImage, SaysInOneLineWhatIsTooDeep) {
+  TreeShape shape;
+  shape.leaf_triangles = 1;
+  try {
+    make_tree_image(clump_and_outliers(600000), shape);
+    FAIL() << "no error";
+  } catch (const testbench::RunError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace

@@ -16,8 +16,8 @@ const char* light_sampling_name(path_tracer::LightSampling sampling) {
 }
 
 const std::vector<std::string>& traversal_names() {
-  static const std::vector<std::string> names = {"brute_force", "temporary_bin", "refill", "lock_step",
-                                                 "packets"};
+  static const std::vector<std::string> names = {"brute_force", "temporary_bin", "refill",
+                                                 "lock_step",   "packets",       "shared_treelets"};
   return names;
 }
 

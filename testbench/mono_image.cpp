@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numeric>
 #include <optional>
+#include <unordered_map>
 
 #include "firmware/path_tracer/triangle_record.hpp"
 #include "testbench/bvh/tree_image.hpp"
@@ -74,8 +75,6 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
 struct Lights {
   std::vector<LightRecord> records;
   std::vector<double> cdf;
-  std::vector<std::array<std::size_t, path_tracer::kLightRun>>
-      triangles;  ///< of each light; one may stand twice
 };
 
 /// Part of the scene that is sampled as one light.
@@ -86,7 +85,6 @@ struct Emitter {
   LightShape shape;
   std::int32_t material;
   std::int32_t face;
-  std::array<std::size_t, path_tracer::kLightRun> triangles;
 };
 
 double area(const Emitter& emitter) {
@@ -114,7 +112,6 @@ std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
     joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
     joined.edge2 = corners_a[(i + 2) % 3] - joined.vertex;
     joined.shape = LightShape::rectangle;
-    joined.triangles = {a.triangles[0], b.triangles[0]};
     const double size = glm::length(joined.edge1) * glm::length(joined.edge2);
     if (std::abs(glm::dot(joined.edge1, joined.edge2)) > kTolerance * size) continue;
     const auto is_corner_of_b = [&](const glm::dvec3& point) {
@@ -138,8 +135,7 @@ std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::in
                           triangle.vertex[2] - triangle.vertex[0],
                           LightShape::triangle,
                           triangle.material,
-                          faces[i],
-                          {i, i}};
+                          faces[i]};
     if (power(emitter, scene) > 0) emitters.push_back(emitter);
   }
   return emitters;
@@ -179,7 +175,6 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
     record.face = emitter.face;
     record.shape = static_cast<std::int32_t>(emitter.shape);
     lights.records.push_back(record);
-    lights.triangles.push_back(emitter.triangles);
     power_so_far += power(emitter, scene);
     lights.cdf.push_back(power_so_far / total_power);
   }
@@ -198,28 +193,50 @@ TreeImage make_tree(const Scene& scene, double reach, const path_tracer::Program
   return make_tree_image(boxes, config.tree);
 }
 
-/// Which of the scene's triangles lie where: leaf by leaf and behind them each light's own, or as they come.
-std::vector<std::size_t> triangles_in_order(const Scene& scene, const Lights& lights, const TreeImage& tree,
+/// Which of the scene's triangles lie where: leaf by leaf, or as they come.
+std::vector<std::size_t> triangles_in_order(const Scene& scene, const TreeImage& tree,
                                             const path_tracer::ProgramConfig& config) {
   std::vector<std::size_t> order(scene.triangles.size());
-  if (!config.uses_tree()) {
+  if (config.uses_tree()) {
+    std::transform(tree.triangles.begin(), tree.triangles.end(), order.begin(),
+                   [](std::int32_t triangle) { return std::size_t(triangle); });
+  } else {
     std::iota(order.begin(), order.end(), std::size_t{0});
-    return order;
   }
-  std::transform(tree.triangles.begin(), tree.triangles.end(), order.begin(),
-                 [](std::int32_t triangle) { return std::size_t(triangle); });
-  for (const auto& of_light : lights.triangles) order.insert(order.end(), of_light.begin(), of_light.end());
   return order;
 }
 
-void put_triangles(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
-                   const std::vector<std::size_t>& order) {
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const std::size_t triangle = order[i];
-    const TriangleRecord record =
-        triangle_record(scene.triangles[triangle],
-                        {faces[triangle], static_cast<std::int32_t>(triangle), image.layout.reach});
-    put(image, image.layout.triangles + i, &record, 1);
+void put_triangle(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
+                  std::size_t triangle, std::size_t place) {
+  const TriangleRecord record = triangle_record(
+      scene.triangles[triangle], {faces[triangle], static_cast<std::int32_t>(triangle), image.layout.reach});
+  put(image, image.layout.triangles + place, &record, 1);
+}
+
+/// Behind the triangles: for each light all triangles of its face, so that a shadow ray that hits one of them
+/// may stop at anything nearer. A face of more triangles gets records that nothing hits: its shadow rays miss
+/// their light at first and look for the nearest hit as segments do, since any of the others may be nearer
+/// yet.
+void put_light_runs(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
+                    const Lights& lights) {
+  std::unordered_map<std::int32_t, std::vector<std::size_t>> of_face;
+  for (const LightRecord& light : lights.records) of_face[light.face];
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto found = of_face.find(faces[i]);
+    if (found != of_face.end() && found->second.size() <= path_tracer::kLightRun) found->second.push_back(i);
+  }
+  std::size_t place = scene.triangles.size();
+  for (const LightRecord& light : lights.records) {
+    const std::vector<std::size_t>& triangles = of_face[light.face];
+    const std::size_t in_run = triangles.size() <= path_tracer::kLightRun ? triangles.size() : 0;
+    for (std::size_t i = 0; i < path_tracer::kLightRun; ++i, ++place) {
+      const TriangleRecord nothing;
+      if (i < in_run) {
+        put_triangle(image, scene, faces, triangles[i], place);
+      } else {
+        put(image, image.layout.triangles + place, &nothing, 1);
+      }
+    }
   }
 }
 
@@ -251,7 +268,10 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   image.bytes.resize(image.layout.scene_bytes);
   const CameraRecord camera = camera_record(scene.camera, scene.film);
   put(image, image.layout.camera, &camera, 1);
-  put_triangles(image, scene, faces, triangles_in_order(scene, lights, tree, config));
+  const std::vector<std::size_t> order = triangles_in_order(scene, tree, config);
+  for (std::size_t place = 0; place < order.size(); ++place)
+    put_triangle(image, scene, faces, order[place], place);
+  if (config.uses_tree()) put_light_runs(image, scene, faces, lights);
   put_surfaces(image, scene, faces);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());

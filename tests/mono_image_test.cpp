@@ -109,12 +109,32 @@ TEST(MonoImage, WithATreeHoldsEachTriangleOnceAndThoseOfLightsAgain) {
   EXPECT_EQ(met, std::vector<int>(60, 1));
   for (int light = 0; light < image.layout.light_count; ++light) {
     const auto of_light = record(image, image.layout.lights, light);
-    for (int i = 0; i < path_tracer::kLightRun; ++i) {
-      const auto in_run = record(image, image.layout.triangles, 60 + light * path_tracer::kLightRun + i);
-      EXPECT_EQ(in_run.face, of_light.face);
-      EXPECT_EQ(vector(in_run.vertex), vector(of_light.vertex));
-    }
+    const int first = 60 + light * path_tracer::kLightRun;
+    const auto in_run = record(image, image.layout.triangles, first);
+    EXPECT_EQ(in_run.face, of_light.face);
+    EXPECT_EQ(vector(in_run.vertex), vector(of_light.vertex));
+    EXPECT_EQ(vector(record(image, image.layout.triangles, first + 1).back), glm::dvec3(0.0))
+        << "hit by nothing";
   }
+}
+
+/// Any of the others may be nearer than the one that a shadow ray was sent to, so that it may not begin with
+/// it.
+TEST(MonoImage, AFaceOfManyTrianglesHasNoRunForShadowRays) {
+  Scene scene = three_triangles();
+  const std::int32_t light = scene.triangles[0].material;
+  for (int i = 0; i < 3; ++i) scene.triangles.push_back({{{i, 0, 50}, {i + 1, 0, 50}, {i, 1, 50}}, light});
+  scene.triangles.push_back({{{1, 0, 50}, {0, 1, 50}, {1, 1, 50}}, light});
+  for (auto& material : scene.materials) material.emission = glm::dvec3(1.0);
+  const MonoImage image = make_mono_image(scene, 96, with_tree());
+  int without = 0;
+  for (int i = 0; i < image.layout.light_count; ++i) {
+    const auto in_run =
+        record(image, image.layout.triangles, image.layout.triangle_count + i * path_tracer::kLightRun);
+    without += vector(in_run.back) == glm::dvec3(0.0);
+  }
+  EXPECT_GE(without, 3);
+  EXPECT_LT(without, image.layout.light_count);
 }
 
 /// No ray starts farther from a vertex: neither at the camera nor on a triangle.

@@ -259,9 +259,9 @@ TEST_P(TraversalEquality, EveryShadowRaySeesTheLightThatBruteForceSees) {
 INSTANTIATE_TEST_SUITE_P(Meshes, TraversalEquality, testing::ValuesIn(meshes()),
                          [](const auto& suite) { return std::string(suite.param.name); });
 
-/// Does not hold yet: a ray towards an edge that two triangles of one face share hits both. A decal that lies
-/// between the two, by rounding, ends it before the nearer one is found, which brute force sees.
-TEST(TraversalOfLights, DISABLED_ThatShareEdgesUnderADecalAreSeenAsByBruteForce) {
+/// A ray towards an edge that two triangles of one face share hits both, and a decal may lie between the two,
+/// by rounding: it must not end the ray before the nearer one is found.
+TEST(TraversalOfLights, ThatShareEdgesUnderADecalAreSeenAsByBruteForce) {
   RaySearch search(cn::widest_level());
   expect_the_same_lights_seen(scene_of(decals()), search);
 }

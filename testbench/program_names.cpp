@@ -16,7 +16,8 @@ const char* light_sampling_name(path_tracer::LightSampling sampling) {
 }
 
 const char* traversal_name(path_tracer::Traversal traversal) {
-  static constexpr const char* kNames[] = {"brute_force", "temporary_bin", "refill", "lock_step", "packets"};
+  static constexpr const char* kNames[] = {"brute_force", "temporary_bin", "refill",
+                                           "lock_step",   "packets",       "shared_treelets"};
   return kNames[std::size_t(traversal)];
 }
 

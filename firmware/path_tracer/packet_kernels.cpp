@@ -2,7 +2,6 @@
 
 #include "firmware/path_tracer/packet_kernels.hpp"
 
-#include "firmware/cn/least.hpp"
 #include "firmware/path_tracer/nearest_face.hpp"
 
 namespace path_tracer {
@@ -31,14 +30,6 @@ void begin(const BeginPacketArguments& arguments) {
   arguments.packet.set(&PacketRecord::light, arguments.ray.get(&QueuedRay::light));
   arguments.keys[PacketKeys::kRoot].write(poly<std::int32_t>(0));
   cn::keep(record.get(&TraversalRecord::light_face) != poly<std::int32_t>(kNoFace), *arguments.seeks_light);
-}
-
-void least(const LeastArguments& arguments) {
-  cn::keep_least(arguments.value.read(), arguments.bits, *arguments.least);
-}
-
-void equal(const EqualArguments& arguments) {
-  cn::keep(arguments.value.read() == poly<std::int32_t>(arguments.wanted), *arguments.equal);
 }
 
 void want(const WantArguments& arguments) {
@@ -123,8 +114,6 @@ void test_leaf(const TestLeafArguments& arguments) {
 const PacketKernels& PACKET_KERNELS() {
   static constexpr PacketKernels table{
       cn::kernel<BeginPacketArguments, begin>("begin_packet"),
-      cn::kernel<LeastArguments, least>("least"),
-      cn::kernel<EqualArguments, equal>("equal"),
       cn::kernel<WantArguments, want>("want"),
       cn::kernel<VisitArguments, visit>("visit"),
       cn::kernel<TestLeafArguments, test_leaf>("test_leaf"),

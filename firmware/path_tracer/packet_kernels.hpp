@@ -48,19 +48,6 @@ struct BeginPacketArguments {
   LaneMask* seeks_light = nullptr;
 };
 
-/// For the control unit (cn::keep_least).
-struct LeastArguments {
-  PolyField<std::int32_t> value;
-  int bits = 0;
-  std::int32_t* least = nullptr;
-};
-
-struct EqualArguments {
-  PolyField<std::int32_t> value;
-  std::int32_t wanted = 0;
-  LaneMask* equal = nullptr;
-};
-
 /// Which rays want what the packet comes to next.
 struct WantArguments {
   PolyPointer<PacketRecord> packet;
@@ -94,8 +81,6 @@ struct TestLeafArguments {
 
 struct PacketKernels {
   cn::Kernel<BeginPacketArguments> begin;
-  cn::Kernel<LeastArguments> least;
-  cn::Kernel<EqualArguments> equal;
   cn::Kernel<WantArguments> want;
   cn::Kernel<VisitArguments> visit;
   cn::Kernel<TestLeafArguments> test_leaf;

@@ -28,21 +28,12 @@ PacketStage::PacketStage(const StageContext& context, TreeContext& tree)
   keys_ = PacketKeys(memory.allocate("packet's keys", PacketKeys::kBytes));
 }
 
-LaneMask PacketStage::rays_of(int block) const {
-  const int first = block * num_pes();
-  return LaneMask::first(std::min(num_pes(), context_.queue->rays() - first));
-}
-
 void PacketStage::load(std::uint64_t step, int block) {
-  context_.saves.wait_until(context_.queue->last_writer());
-  const LaneMask rays = rays_of(block);
-  context_.loads.copy_m2p(step, kNoBlock, loads(step).ray.span(),
-                          cn::MonoPlaces::array(context_.queue->next_place(), sizeof(QueuedRay)), rays);
-  context_.queue->take(rays.count());
+  load_packed_rays(step, block);
 }
 
 void PacketStage::process(std::uint64_t step, int block) {
-  rays_ = rays_of(block);
+  rays_ = packed_rays(block);
   enter(step, record_, rays_);
   count_pass(0, rays_);
   test_lights(begin(step));
@@ -79,14 +70,14 @@ std::int32_t PacketStage::least_light(const LaneMask& rays) {
   arguments.value = packet_.field(&PacketRecord::light);
   arguments.bits = bits_of(context_.layout.light_count);
   arguments.least = &least;
-  context_.machine.run(packet_kernels_.least, arguments, rays);
+  context_.machine.run(kernels_.least, arguments, rays);
   return least;
 }
 
 LaneMask PacketStage::rays_with_light(std::int32_t light, const LaneMask& rays) {
   LaneMask equal;
-  context_.machine.run(packet_kernels_.equal,
-                       EqualArguments{packet_.field(&PacketRecord::light), light, &equal}, rays);
+  context_.machine.run(kernels_.equal, EqualArguments{packet_.field(&PacketRecord::light), light, &equal},
+                       rays);
   return equal;
 }
 

@@ -27,7 +27,6 @@ class PacketStage : public TreeStage {
     int place = 0;  ///< of the rays' keys for it
   };
 
-  LaneMask rays_of(int block) const;
   LaneMask begin(std::uint64_t step);
   void test_lights(LaneMask seeks_light);
   std::int32_t least_light(const LaneMask& rays);

@@ -4,6 +4,7 @@
 
 #include "firmware/path_tracer/packet_stage.hpp"
 #include "firmware/path_tracer/refill.hpp"
+#include "firmware/path_tracer/shared_treelets.hpp"
 #include "firmware/path_tracer/temporary_bin.hpp"
 
 namespace path_tracer {
@@ -75,6 +76,8 @@ std::unique_ptr<TreeTraversal> make_tree(const StageContext& context, TreeContex
   if (context.config.traversal == Traversal::temporary_bin)
     return std::make_unique<TemporaryBinTraversal>(context, tree);
   if (context.config.traversal == Traversal::packets) return std::make_unique<PacketTraversal>(context, tree);
+  if (context.config.traversal == Traversal::shared_treelets)
+    return std::make_unique<SharedTreeletTraversal>(context, tree);
   return std::make_unique<RefillTraversal>(context, tree);
 }
 

@@ -1,5 +1,7 @@
 #include "firmware/path_tracer/program.hpp"
 
+#include <algorithm>
+
 namespace path_tracer {
 namespace {
 
@@ -79,6 +81,31 @@ int traversal_bin_blocks(const ProgramConfig& config) {
   return config.bin_blocks + 2 * config.load_buffers() + config.save_buffers();
 }
 
+int treelet_steps(const ProgramConfig& config) {
+  return 2 * config.load_buffers() - 1;
+}
+
+namespace {
+
+/// Blocks of the treelet queues' pool: all rays at once, packed, and of those that are partly full one for
+/// each treelet that may have rays, as far as that is a reasonable part of the memory.
+int treelet_pool_blocks(const SceneCounts& scene, int num_pes, const ProgramConfig& config) {
+  constexpr std::int64_t kMostGroups = 4096;
+  const TreeShape& tree = config.tree;
+  const std::int64_t treelets = (scene.tree_slots - tree.resident_nodes) / tree.treelet_nodes;
+  const std::int64_t rays = std::int64_t(num_pes) * config.bin_blocks;
+  const auto groups = static_cast<int>(std::min({treelets, rays, kMostGroups}));
+  return config.bin_blocks + 1 + treelet_steps(config) + groups;
+}
+
+void take_treelet_pool(Layout& layout, MonoAllocator& memory, int num_pes, const ProgramConfig& config) {
+  layout.treelet_pool = memory.take<std::uint64_t>(
+      "treelet queues", std::uint64_t(num_pes) * std::uint64_t(layout.treelet_pool_blocks) *
+                            std::uint64_t(config.tree.record_bytes()) / 8);
+}
+
+}  // namespace
+
 Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& config) {
   const auto slots = std::uint64_t(num_pes) * std::uint64_t(config.bin_blocks);
   const TreeShape& tree = config.tree;
@@ -86,6 +113,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   MonoAllocator memory(layout.regions);
   layout.triangle_count = scene.triangles;
   layout.light_count = scene.lights;
+  layout.tree_slots = scene.tree_slots;
   layout.camera = memory.take<CameraRecord>("camera", 1);
   // Leaves are loaded in one size, so that the last one reaches beyond the last triangle.
   const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
@@ -106,6 +134,10 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
     layout.traversal_bin = memory.take<std::uint64_t>(
         "traversal bin", std::uint64_t(num_pes) * std::uint64_t(traversal_bin_blocks(config)) *
                              std::uint64_t(tree.record_bytes()) / 8);
+  if (config.traversal == Traversal::shared_treelets) {
+    layout.treelet_pool_blocks = treelet_pool_blocks(scene, num_pes, config);
+    take_treelet_pool(layout, memory, num_pes, config);
+  }
   layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots);
   if (config.uses_tree())
     layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);

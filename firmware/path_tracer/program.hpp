@@ -39,6 +39,8 @@ enum class Traversal : std::uint8_t {
   lock_step,      ///< the same without: new rays are loaded when all PEs are idle
   /// A tree that the control unit walks through for a block of rays at once.
   packets,
+  /// A tree, of which a block of rays shares the piece that all of them ask for.
+  shared_treelets,
 };
 
 inline constexpr int kMaxBuffers = 8;
@@ -109,12 +111,15 @@ struct Layout {
   cn::MonoPointer<std::uint64_t> nodes;
   int triangle_count = 0;  ///< with a tree, triangles lie leaf by leaf, and behind them kLightRun a light
   int light_count = 0;
+  int tree_slots = 0;
+  int treelet_pool_blocks = 0;
   double reach = 0;  ///< no ray starts farther from a vertex (triangle_record.hpp)
 
   // Bins, one record a slot (vertices: slot_vertices a slot).
   cn::MonoPointer<RayRecord> ray_bin;
   cn::MonoPointer<QueuedRay> ray_queue;  ///< the ray bin with a tree
   cn::MonoPointer<std::uint64_t> traversal_bin;
+  cn::MonoPointer<std::uint64_t> treelet_pool;
   cn::MonoPointer<HitRecord> intersection_bin;
   cn::MonoPointer<cn::MonoAddress> surface_place_bin;  ///< with a tree, or PEs keep them
   cn::MonoPointer<ScatterRecord> scatter_bin;
@@ -145,6 +150,9 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
 
 /// Blocks of the traversal bin's ring: all rays at once, and room for blocks that are being loaded or saved.
 int traversal_bin_blocks(const ProgramConfig& config);
+
+/// Steps of the treelet queues under way, from the load of a block of rays to its turn.
+int treelet_steps(const ProgramConfig& config);
 
 /// A count by pass, in at most kMaxIntervals intervals of as many passes each; the last one may be shorter.
 /// Two intervals become one when there are too many.

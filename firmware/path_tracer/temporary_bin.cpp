@@ -1,7 +1,5 @@
 #include "firmware/path_tracer/temporary_bin.hpp"
 
-#include <algorithm>
-
 namespace path_tracer {
 
 /// From the load, which is begun two steps of n ahead since a ray's leaf is known only when the ray is there, to
@@ -47,21 +45,12 @@ void TemporaryBinStage::save(std::uint64_t step, int /*block*/) {
   save_hits(step);
 }
 
-LaneMask BeginStage::rays_of(int block) const {
-  const int first = block * num_pes();
-  return LaneMask::first(std::min(num_pes(), context_.queue->rays() - first));
-}
-
 void BeginStage::load(std::uint64_t step, int block) {
-  context_.saves.wait_until(context_.queue->last_writer());
-  const LaneMask rays = rays_of(block);
-  context_.loads.copy_m2p(step, kNoBlock, loads(step).ray.span(),
-                          cn::MonoPlaces::array(context_.queue->next_place(), sizeof(QueuedRay)), rays);
-  context_.queue->take(rays.count());
+  load_packed_rays(step, block);
 }
 
 void BeginStage::process(std::uint64_t step, int block) {
-  const LaneMask rays = rays_of(block);
+  const LaneMask rays = packed_rays(block);
   rays_.records.wait(step);
   enter(step, record(step), rays);
   traverse_and_sort(step, rays, Needs{}, 0);

@@ -48,9 +48,6 @@ class BeginStage : public TemporaryBinStage {
   const char* bin() const override { return "ray bin"; }
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
-
- private:
-  LaneMask rays_of(int block) const;
 };
 
 /// Traversal bin: loads rays, then what they need, tests leaves, goes on through the tree. Its blocks are the

@@ -2,6 +2,7 @@
 
 #include "firmware/path_tracer/traversal_kernels.hpp"
 
+#include "firmware/cn/least.hpp"
 #include "firmware/path_tracer/nearest_face.hpp"
 #include "firmware/path_tracer/places.hpp"
 #include "firmware/path_tracer/traversal.hpp"
@@ -176,6 +177,41 @@ void recall(const RecallArguments& arguments) {
   cn::keep(arguments.surface_place.read() != poly<MonoAddress>(0u), *arguments.hit_something);
 }
 
+void least(const LeastArguments& arguments) {
+  cn::keep_least(arguments.value.read(), arguments.bits, *arguments.least);
+}
+
+void equal(const EqualArguments& arguments) {
+  cn::keep(arguments.value.read() == poly<std::int32_t>(arguments.wanted), *arguments.equal);
+}
+
+/// The operand is fetched, brought into a register and stored.
+void broadcast(const BroadcastArguments& arguments) {
+  for (int i = 0; i < arguments.words; ++i) {
+    cn::issue(cn::InstructionClass::mono, 2);
+    cn::issue(cn::InstructionClass::move);
+    const PolyField<std::uint64_t> to{arguments.to_offset + i * int{sizeof(std::uint64_t)}};
+    to.write(poly<std::uint64_t>(arguments.word[i]));
+  }
+}
+
+void append_to_blocks(const AppendToBlocksArguments& arguments) {
+  if (arguments.rays == 1) {
+    arguments.place.write(poly<MonoAddress>(arguments.address));
+    return;
+  }
+  const auto record_bytes = static_cast<std::size_t>(arguments.record_bytes);
+  const poly<std::int32_t> number = arguments.number.read();
+  const poly<MonoAddress> place = place_of(arguments.address, number, record_bytes);
+  if (arguments.room >= arguments.rays) {
+    arguments.place.write(place);
+  } else {
+    const mask fits = number < poly<std::int32_t>(arguments.room);
+    arguments.place.write(
+        cn::select(fits, place, place_of(arguments.next_address, number - arguments.room, record_bytes)));
+  }
+}
+
 template <NodeFormat format>
 constexpr cn::Kernel<TraverseArguments> traverse_kernel() {
   return cn::kernel<TraverseArguments, traverse<format>>("traverse");
@@ -194,6 +230,10 @@ const TraversalKernels& TRAVERSAL_KERNELS() {
       cn::kernel<FinishArguments, finish>("finish"),
       cn::kernel<AppendRaysArguments, append_rays>("append_rays"),
       cn::kernel<RecallArguments, recall>("recall"),
+      cn::kernel<LeastArguments, least>("least"),
+      cn::kernel<EqualArguments, equal>("equal"),
+      cn::kernel<BroadcastArguments, broadcast>("broadcast"),
+      cn::kernel<AppendToBlocksArguments, append_to_blocks>("append_to_blocks"),
   };
   return table;
 }

@@ -100,6 +100,38 @@ struct RecallArguments {
   LaneMask* hit_something = nullptr;
 };
 
+/// The least value that a PE holds, for the control unit (cn::keep_least).
+struct LeastArguments {
+  PolyField<std::int32_t> value;
+  int bits = 0;
+  std::int32_t* least = nullptr;
+};
+
+/// Which PEs hold a value.
+struct EqualArguments {
+  PolyField<std::int32_t> value;
+  std::int32_t wanted = 0;
+  LaneMask* equal = nullptr;
+};
+
+/// A treelet into all PEs, as mono operands that they store.
+struct BroadcastArguments {
+  const std::uint64_t* word = nullptr;
+  int words = 0;
+  int to_offset = 0;
+};
+
+/// Where rays of one treelet save to (TreeletQueues::Room).
+struct AppendToBlocksArguments {
+  PolyField<std::int32_t> number;  ///< ascending numbers of the rays; not of a single one
+  int rays = 0;
+  int room = 0;  ///< for so many of them
+  MonoAddress address = 0;
+  MonoAddress next_address = 0;  ///< for the others
+  int record_bytes = 0;
+  PolyField<MonoAddress> place;
+};
+
 struct TraversalKernels {
   cn::Kernel<EnqueueArguments> enqueue;
   cn::Kernel<TakeRaysArguments> take_rays;
@@ -109,6 +141,10 @@ struct TraversalKernels {
   cn::Kernel<FinishArguments> finish;
   cn::Kernel<AppendRaysArguments> append_rays;
   cn::Kernel<RecallArguments> recall;
+  cn::Kernel<LeastArguments> least;
+  cn::Kernel<EqualArguments> equal;
+  cn::Kernel<BroadcastArguments> broadcast;
+  cn::Kernel<AppendToBlocksArguments> append_to_blocks;
 };
 
 }  // namespace path_tracer

@@ -1,5 +1,7 @@
 #include "firmware/path_tracer/tree_stage.hpp"
 
+#include <algorithm>
+
 namespace path_tracer {
 
 TreeContext::TreeContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout)
@@ -37,14 +39,27 @@ TreeStage::Hits TreeStage::hits(std::uint64_t step) const {
   return {cutter.take<HitRecord>(), cutter.take_place(), cutter.take_place(), cutter.take_place()};
 }
 
-void TreeStage::load_tree(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays,
-                          Needs& needs) {
+LaneMask TreeStage::packed_rays(int block) const {
+  const int first = block * num_pes();
+  return LaneMask::first(std::min(num_pes(), context_.queue->rays() - first));
+}
+
+void TreeStage::load_packed_rays(std::uint64_t step, int block) {
+  RayQueue& queue = *context_.queue;
+  context_.saves.wait_until(queue.last_writer());
+  const LaneMask rays = packed_rays(block);
+  context_.loads.copy_m2p(step, kNoBlock, loads(step).ray.span(),
+                          cn::MonoPlaces::array(queue.next_place(), sizeof(QueuedRay)), rays);
+  queue.take(rays.count());
+}
+
+void TreeStage::locate(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays,
+                       Needs& needs) {
   const Loads to = loads(step);
-  const TreeShape& shape = tree_.tree.shape;
   needs = Needs{};
   LocateArguments arguments;
   arguments.record = record;
-  arguments.shape = shape;
+  arguments.shape = tree_.tree.shape;
   arguments.triangles = context_.layout.triangles.address;
   arguments.nodes = context_.layout.nodes.address;
   arguments.leaf_place = to.leaf_place;
@@ -53,13 +68,29 @@ void TreeStage::load_tree(std::uint64_t step, PolyPointer<TraversalRecord> recor
   arguments.needs_leaf = &needs.leaf;
   arguments.needs_treelet = &needs.treelet;
   context_.machine.run(kernels_.locate, arguments, rays);
+}
+
+void TreeStage::load_leaves(std::uint64_t step, Needs& needs) {
+  const Loads to = loads(step);
   needs.leaves = context_.machine.count(needs.leaf);
-  const cn::PolySpan leaf{to.leaf.span().offset_bytes, shape.leaf_records() * int{sizeof(TriangleRecord)}};
+  const cn::PolySpan leaf{to.leaf.span().offset_bytes,
+                          tree_.tree.shape.leaf_records() * int{sizeof(TriangleRecord)}};
   context_.loads.copy_m2p(step, kNoBlock, leaf, context_.machine.places_in(to.leaf_place), needs.leaf);
-  context_.loads.copy_m2p(step, kNoBlock, {to.treelet_offset, shape.treelet_bytes()},
-                          context_.machine.places_in(to.treelet_place), needs.treelet);
   context_.counts.traversal.leaf_loads += std::uint64_t(needs.leaves);
+}
+
+void TreeStage::load_treelets(std::uint64_t step, const Needs& needs) {
+  const Loads to = loads(step);
+  context_.loads.copy_m2p(step, kNoBlock, {to.treelet_offset, tree_.tree.shape.treelet_bytes()},
+                          context_.machine.places_in(to.treelet_place), needs.treelet);
   context_.counts.traversal.treelet_loads += std::uint64_t(needs.treelet.count());
+}
+
+void TreeStage::load_tree(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays,
+                          Needs& needs) {
+  locate(step, record, rays, needs);
+  load_leaves(step, needs);
+  load_treelets(step, needs);
 }
 
 void TreeStage::enter(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays) {

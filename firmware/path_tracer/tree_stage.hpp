@@ -44,13 +44,22 @@ class TreeStage : public Stage {
   };
   Loads loads(std::uint64_t step) const;
 
+  /// Of a block of the ray bin, packed: PEs with a ray.
+  LaneMask packed_rays(int block) const;
+  /// The next block.
+  void load_packed_rays(std::uint64_t step, int block);
+
   /// What rays want of the tree.
   struct Needs {
     LaneMask leaf;
     LaneMask treelet;
     int leaves = 0;
   };
-  /// Looks it up and begins to load it.
+  /// Looks it up.
+  void locate(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays, Needs& needs);
+  void load_leaves(std::uint64_t step, Needs& needs);
+  void load_treelets(std::uint64_t step, const Needs& needs);
+  /// All of this.
   void load_tree(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays, Needs& needs);
   /// Puts rays that were loaded where rays in the tree are kept.
   void enter(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays);

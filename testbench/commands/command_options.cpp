@@ -154,13 +154,15 @@ void add_traversal_options(CLI::App& command, path_tracer::ProgramConfig& progra
   using path_tracer::Traversal;
   command
       .add_option("--traversal", program.traversal,
-                  "How rays find triangles: brute_force, temporary_bin, refill, lock_step or packets")
+                  "How rays find triangles: brute_force, temporary_bin, refill, lock_step, packets "
+                  "or shared_treelets")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Traversal>{{"brute_force", Traversal::brute_force},
                                            {"temporary_bin", Traversal::temporary_bin},
                                            {"refill", Traversal::refill},
                                            {"lock_step", Traversal::lock_step},
-                                           {"packets", Traversal::packets}}))
+                                           {"packets", Traversal::packets},
+                                           {"shared_treelets", Traversal::shared_treelets}}))
       ->default_str(traversal_name(program.traversal));
   path_tracer::TreeShape& tree = program.tree;
   command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")

@@ -126,8 +126,9 @@ void PacketStage::visit(const Entry& entry, const LaneMask& rays) {
   push_children(node, entry.level, enters_first);
 }
 
-/// In the order in which most rays want them: what most enter first comes first. An order by the signs of most
-/// directions, which needs no votes, visits so much more that it is no faster. Without a vote no ray meets any.
+/// In the order in which most rays want them: what most enter first comes first. An order by the signs of
+/// most directions, which needs no votes, visits so much more that it is no faster. Without a vote no ray
+/// meets any.
 void PacketStage::push_children(const MonoNode& node, int level, const LaneMask* enters_first) {
   int votes[kTraversalWidth] = {};
   int order[kTraversalWidth] = {};

@@ -20,36 +20,34 @@ model::ChipConfig priced_chip() {
 }
 
 /// Eight PEs enter a loop, five stay for its second pass; a region inside it is reached by two.
-IssueTree loop() {
-  IssueTree tree;
-  IssueTree::Node& root = tree.root();
-  root.reached = true;
-  root.enabled_lanes = 8;
-  root.counts[InstructionClass::fp64_add] = 10;  // 40 cycles
-  root.regions.resize(1);
-  root.regions[0].resize(2);
-  IssueTree::Node& first = root.regions[0][0];
-  first.reached = true;
-  first.enabled_lanes = 8;
-  first.counts[InstructionClass::fp64_add] = 5;  // 20 cycles
-  IssueTree::Node& second = root.regions[0][1];
-  second.reached = true;
-  second.enabled_lanes = 5;
-  second.counts[InstructionClass::sram] = 5;  // 10 cycles
-  second.regions.resize(2);
-  second.regions[0].resize(1);  // nobody came here: what it holds does not count
-  second.regions[0][0].counts[InstructionClass::fp64_add] = 1000;
-  second.regions[1].resize(1);
-  second.regions[1][0].reached = true;
-  second.regions[1][0].enabled_lanes = 2;
-  second.regions[1][0].counts[InstructionClass::sram] = 15;  // 30 cycles
-  return tree;
-}
+class Loop {
+ public:
+  Loop() {
+    reach(root(), 8).counts[InstructionClass::fp64_add] = 10;                   // 40 cycles
+    reach(tree_.node(root(), 0, 0), 8).counts[InstructionClass::fp64_add] = 5;  // 20 cycles
+    IssueTree::Node& second = reach(tree_.node(root(), 0, 1), 5);
+    second.counts[InstructionClass::sram] = 5;  // 10 cycles
+    // Nobody came here: what it holds does not count.
+    tree_.node(second, 0, 0).counts[InstructionClass::fp64_add] = 1000;
+    reach(tree_.node(second, 1, 0), 2).counts[InstructionClass::sram] = 15;  // 30 cycles
+  }
+  operator const IssueTree&() const { return tree_; }
+  IssueTree::Node& root() { return tree_.root(); }
+
+ private:
+  static IssueTree::Node& reach(IssueTree::Node& node, int lanes) {
+    node.reached = true;
+    node.enabled_lanes = std::uint64_t(lanes);
+    return node;
+  }
+
+  IssueTree tree_;
+};
 
 TEST_F(PeArray, CostAddsUpTheNodesThatWereReached) {
   const model::ChipConfig config = priced_chip();
   model::PeArray array("pe_array", config);
-  const model::PeArray::Cost cost = array.retire("loop", loop());
+  const model::PeArray::Cost cost = array.retire("loop", Loop());
   EXPECT_EQ(cost.cycles, 100u);
   EXPECT_EQ(cost.sram_cycles, 40u);
 }
@@ -58,10 +56,10 @@ TEST_F(PeArray, CodeQualityScalesAllInstructions) {
   model::ChipConfig config = priced_chip();
   config.poly.code_quality_factor = 1.25;
   model::PeArray array("pe_array", config);
-  const model::PeArray::Cost cost = array.retire("loop", loop());
+  const model::PeArray::Cost cost = array.retire("loop", Loop());
   EXPECT_EQ(cost.cycles, 125u);
   EXPECT_EQ(cost.sram_cycles, 50u);
-  IssueTree with_mono = loop();
+  Loop with_mono;
   with_mono.root().counts[InstructionClass::mono] = 50;     // 150 cycles, the longer stream
   EXPECT_EQ(array.retire("loop", with_mono).cycles, 188u);  // 187.5
   with_mono.root().counts[InstructionClass::mono] = 33;     // 99, hidden
@@ -116,7 +114,7 @@ TEST_F(PeArray, CostIsRoundedOnceAKernel) {
 TEST_F(PeArray, EfficiencyWeighsPesByTheCyclesTheyWereEnabledIn) {
   const model::ChipConfig config = priced_chip();
   model::PeArray array("pe_array", config);
-  array.retire("loop", loop());
+  array.retire("loop", Loop());
   // (60 cycles x 8 + 10 x 5 + 30 x 2) / (100 x 8)
   EXPECT_DOUBLE_EQ(array.kernels()[0].simd_efficiency(array.num_pes()), 590.0 / 800.0);
   EXPECT_DOUBLE_EQ(array.total().simd_efficiency(8), 590.0 / 800.0);
@@ -126,7 +124,7 @@ TEST_F(PeArray, EfficiencyIsNotChangedByCodeQualityOrMonoInstructions) {
   model::ChipConfig config = priced_chip();
   config.poly.code_quality_factor = 3;
   model::PeArray array("pe_array", config);
-  IssueTree with_mono = loop();
+  Loop with_mono;
   with_mono.root().counts[InstructionClass::mono] = 100000;
   array.retire("loop", with_mono);
   EXPECT_DOUBLE_EQ(array.total().simd_efficiency(8), 590.0 / 800.0);
@@ -145,9 +143,9 @@ TEST_F(PeArray, CountsByKernelInTheOrderOfTheirFirstRun) {
   tree.root().reached = true;
   tree.root().enabled_lanes = 4;
   tree.root().counts[InstructionClass::sram] = 3;
-  array.retire(kLoop, loop());
+  array.retire(kLoop, Loop());
   array.retire(kShort, tree);
-  array.retire(kLoop, loop());
+  array.retire(kLoop, Loop());
   ASSERT_EQ(array.kernels().size(), 2u);
   const model::KernelStatistics& of_loop = array.kernels()[0];
   EXPECT_EQ(of_loop.name, "loop");

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "firmware/path_tracer/kernels.hpp"
+#include "firmware/path_tracer/triangle_record.hpp"
 
 namespace {
 

@@ -67,26 +67,32 @@ TEST_F(PeArray, CodeQualityScalesAllInstructions) {
 }
 
 /// 10 cycles of vector arithmetic, `load_words` of 2 cycles, and 5 cycles that overlap with nothing.
-IssueTree vector_code(std::uint64_t load_words) {
-  IssueTree tree;
-  tree.root().reached = true;
-  tree.root().enabled_lanes = 8;
-  tree.root().counts[InstructionClass::fp64_add_vector4] = 2;
-  tree.root().counts[InstructionClass::fp32_multiply_add_vector4] = 8;
-  tree.root().counts[InstructionClass::move] = 5;
-  tree.root().counts[InstructionClass::sram_vector_load] = load_words;
-  return tree;
-}
+class VectorCode {
+ public:
+  explicit VectorCode(std::uint64_t load_words) {
+    IssueTree::Node& root = tree_.root();
+    root.reached = true;
+    root.enabled_lanes = 8;
+    root.counts[InstructionClass::fp64_add_vector4] = 2;
+    root.counts[InstructionClass::fp32_multiply_add_vector4] = 8;
+    root.counts[InstructionClass::move] = 5;
+    root.counts[InstructionClass::sram_vector_load] = load_words;
+  }
+  operator const IssueTree&() const { return tree_; }
+
+ private:
+  IssueTree tree_;
+};
 
 TEST_F(PeArray, VectorLoadsGoOnBesideVectorArithmeticOnly) {
   model::ChipConfig config = priced_chip();
   config.poly.cycles[std::size_t(InstructionClass::sram_vector_load)] = 2;
   config.poly.vector_loads_overlap = true;
   model::PeArray array("pe_array", config);
-  EXPECT_EQ(array.retire("few", vector_code(3)).cycles, 15u);
-  EXPECT_EQ(array.retire("few", vector_code(3)).sram_cycles, 6u);
-  EXPECT_EQ(array.retire("many", vector_code(7)).cycles, 19u);  // 14 of loads, 5 of moves
-  EXPECT_EQ(array.retire("many", vector_code(7)).sram_cycles, 14u);
+  EXPECT_EQ(array.retire("few", VectorCode(3)).cycles, 15u);
+  EXPECT_EQ(array.retire("few", VectorCode(3)).sram_cycles, 6u);
+  EXPECT_EQ(array.retire("many", VectorCode(7)).cycles, 19u);  // 14 of loads, 5 of moves
+  EXPECT_EQ(array.retire("many", VectorCode(7)).sram_cycles, 14u);
 }
 
 TEST_F(PeArray, VectorLoadsAddUpOnAChipThatDoesNotOverlapThem) {
@@ -94,8 +100,8 @@ TEST_F(PeArray, VectorLoadsAddUpOnAChipThatDoesNotOverlapThem) {
   config.poly.cycles[std::size_t(InstructionClass::sram_vector_load)] = 2;
   config.poly.vector_loads_overlap = false;
   model::PeArray array("pe_array", config);
-  EXPECT_EQ(array.retire("few", vector_code(3)).cycles, 21u);
-  EXPECT_EQ(array.retire("many", vector_code(7)).cycles, 29u);
+  EXPECT_EQ(array.retire("few", VectorCode(3)).cycles, 21u);
+  EXPECT_EQ(array.retire("many", VectorCode(7)).cycles, 29u);
 }
 
 TEST_F(PeArray, CostIsRoundedOnceAKernel) {

@@ -32,9 +32,13 @@ std::map<std::string, path_tracer::Traversal> traversals_by_name() {
   return traversals;
 }
 
-const char* node_format_name(path_tracer::NodeFormat format) {
-  static constexpr const char* kNames[] = {"fp64", "fp32", "quantised8"};
-  return kNames[std::size_t(format)];
+const std::vector<std::string>& node_format_names() {
+  static const std::vector<std::string> names = {"fp64", "fp32", "quantised8"};
+  return names;
+}
+
+const std::string& node_format_name(path_tracer::NodeFormat format) {
+  return node_format_names().at(std::size_t(format));
 }
 
 }  // namespace testbench

@@ -15,6 +15,7 @@ const char* light_sampling_name(path_tracer::LightSampling sampling);
 const std::string& traversal_name(path_tracer::Traversal traversal);
 const std::vector<std::string>& traversal_names();
 std::map<std::string, path_tracer::Traversal> traversals_by_name();
-const char* node_format_name(path_tracer::NodeFormat format);
+const std::vector<std::string>& node_format_names();
+const std::string& node_format_name(path_tracer::NodeFormat format);
 
 }  // namespace testbench

@@ -59,18 +59,15 @@ void RefillStage::process(std::uint64_t step, int index) {
 
 /// Beside what the chip does, so it costs nothing.
 void RefillStage::count_turns(Group& group, const LaneMask& rays) {
-  TraversalCounts& counts = context_.counts.traversal;
-  count_pass(0, rays);  // all PEs
-  counts.rays[0] -= std::uint64_t(rays.count());
+  count_rays(0, std::uint64_t(group.fresh.count()));
+  count_lanes(0, rays);  // all PEs
   for (int pe = 0; pe < num_pes(); ++pe) {
-    if (!rays[pe]) continue;
     std::size_t& pass = group.passes[std::size_t(pe)];
-    pass = group.fresh[pe] ? 0 : pass + 1;
-    if (counts.rays.size() <= pass) {
-      counts.rays.resize(pass + 1);
-      counts.lanes.resize(pass + 1);
+    if (group.fresh[pe]) {
+      pass = 0;
+    } else if (rays[pe]) {
+      count_rays(++pass, 1);
     }
-    ++counts.rays[pass];
   }
 }
 

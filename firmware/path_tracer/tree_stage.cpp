@@ -101,7 +101,6 @@ void TreeStage::enter(std::uint64_t step, PolyPointer<TraversalRecord> record, c
   arguments.record = record;
   arguments.treelet = from.treelet;
   context_.machine.run(kernels_.enter, arguments, rays);
-  tree_.entered += std::uint64_t(rays.count());
 }
 
 LaneMask TreeStage::traverse(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays,
@@ -149,20 +148,28 @@ void TreeStage::save_hits(std::uint64_t step) {
   tree_.last_hit_step = step;
 }
 
-/// Beside what the chip does, so it costs nothing.
+/// These three are beside what the chip does, so they cost nothing.
 void TreeStage::count_pass(std::size_t pass, const LaneMask& rays) {
+  count_rays(pass, std::uint64_t(rays.count()));
+  count_lanes(pass, rays);
+}
+
+void TreeStage::count_rays(std::size_t pass, std::uint64_t rays) {
   TraversalCounts& counts = context_.counts.traversal;
   if (counts.rays.size() <= pass) {
     counts.rays.resize(pass + 1);
     counts.lanes.resize(pass + 1);
   }
+  counts.rays[pass] += rays;
+}
+
+void TreeStage::count_lanes(std::size_t pass, const LaneMask& rays) {
+  TraversalCounts& counts = context_.counts.traversal;
   const auto lanes = std::uint64_t(num_pes());
-  const auto enabled = std::uint64_t(rays.count());
-  counts.rays[pass] += enabled;
   counts.lanes[pass] += lanes;
   const auto in_bin = std::uint64_t(context_.queue->rays());
   if (20 * tree_.finished >= 19 * in_bin) return;
-  counts.rays_before_tail += enabled;
+  counts.rays_before_tail += std::uint64_t(rays.count());
   counts.lanes_before_tail += lanes;
 }
 
@@ -181,7 +188,6 @@ void RecallStage::process(std::uint64_t, int block) {
 }
 
 void TreeTraversal::begin_pass(const Plan& plan) {
-  tree_.entered = 0;
   tree_.finished = 0;
   plan_first(plan);
 }

@@ -15,9 +15,7 @@ struct TreeContext {
   TreeInSram tree;
   double reach;
   std::uint64_t last_hit_step = 0;  ///< the last that saved hits
-  // Of the rays that are in the ray bin:
-  std::uint64_t entered = 0;
-  std::uint64_t finished = 0;
+  std::uint64_t finished = 0;       ///< of the rays that are in the ray bin
 };
 
 /// A stage whose PEs hold rays on their way through the tree.
@@ -70,6 +68,9 @@ class TreeStage : public Stage {
   void finish(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays);
   void save_hits(std::uint64_t step);
   void count_pass(std::size_t pass, const LaneMask& rays);
+  void count_rays(std::size_t pass, std::uint64_t rays);
+  /// Of a pass that has rays, which may be fewer than these.
+  void count_lanes(std::size_t pass, const LaneMask& rays);
 
   TreeContext& tree_;
   const TraversalKernels& kernels_;

@@ -78,11 +78,6 @@ const Values& timing_names() {
   return names;
 }
 
-const Values& node_format_names() {
-  static const Values names = {"fp64", "fp32", "quantised8"};
-  return names;
-}
-
 template <int TreeShape::*member, int low, int high>
 RunParameter tree_integer(const std::string& name) {
   return {"firmware." + name, integers(low, high), Effect::stream,

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "firmware/path_tracer/node_layout.hpp"
+#include "testbench/bvh/balanced_bvh.hpp"
 #include "testbench/error.hpp"
 
 namespace testbench {
@@ -160,11 +161,12 @@ int levels(const Bvh& bvh) {
   return deepest;
 }
 
-Bvh build_bvh(const std::vector<Box>& boxes, const BvhOptions& options) {
-  check(options);
+namespace {
+
+/// No nodes when Embree gives up, as it does where triangles that lie in one place would go too deep.
+Bvh build_by_area(const std::vector<Box>& boxes, const BvhOptions& options) {
   Bvh bvh;
   bvh.width = options.width;
-  if (boxes.empty()) return bvh;
   std::vector<RTCBuildPrimitive> primitives = primitives_of(boxes);
 
   // One thread: the order in which several allocate and split is not the same every time.
@@ -187,11 +189,23 @@ Bvh build_bvh(const std::vector<Box>& boxes, const BvhOptions& options) {
   arguments.setNodeBounds = ignore_bounds;
   arguments.createLeaf = create_leaf;
   const auto* const root = static_cast<const Branch*>(rtcBuildBVH(&arguments));
-  if (root == nullptr)
-    throw RunError("BVH of " + std::to_string(boxes.size()) + " triangles: Embree's error " +
-                   std::to_string(rtcGetDeviceError(device.get())));
+  if (root == nullptr) return bvh;
   bvh.triangles.reserve(boxes.size());
   Copier(boxes, bvh).copy_root(*root);
+  return bvh;
+}
+
+}  // namespace
+
+Bvh build_bvh(const std::vector<Box>& boxes, const BvhOptions& options) {
+  check(options);
+  if (boxes.empty()) return build_balanced_bvh(boxes, options.width, options.max_leaf_triangles);
+  Bvh bvh = build_by_area(boxes, options);
+  if (bvh.nodes.empty() || levels(bvh) > options.max_depth)
+    bvh = build_balanced_bvh(boxes, options.width, options.max_leaf_triangles);
+  if (levels(bvh) > options.max_depth)
+    throw RunError("BVH of " + std::to_string(boxes.size()) + " triangles: " + std::to_string(levels(bvh)) +
+                   " levels at least, allowed are " + std::to_string(options.max_depth));
   return bvh;
 }
 

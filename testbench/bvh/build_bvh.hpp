@@ -15,9 +15,10 @@ struct BvhOptions {
 /// A tree by the surface area heuristic, split at binned centroids (Wald, "On fast Construction of SAH-based
 /// Bounding Volume Hierarchies", IRT 2007). Embree splits and joins nodes to the width; boxes are made again,
 /// in double precision. The same triangles give the same tree.
-/// A million triangles take about two seconds, so there is no way to interrupt it.
+/// A million triangles take about two seconds, so there is no way to interrupt it. Where this way would go
+/// too deep, a balanced tree (balanced_bvh.hpp).
 ///
-/// @throws InputError for options out of range
+/// @throws InputError for options out of range, RunError when no tree of so few levels holds all triangles
 Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhOptions& options);
 
 /// The same of the triangles' boxes.

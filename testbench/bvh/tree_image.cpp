@@ -23,9 +23,6 @@ TreeImage make_tree_image(const std::vector<Box>& boxes, const path_tracer::Tree
   Bvh bvh = build_bvh(boxes, options);
   TreeImage image;
   image.levels = levels(bvh);
-  if (image.levels > path_tracer::kMaxTreeLevels)
-    throw RunError("tree of boxes: " + std::to_string(image.levels) + " levels, a ray can follow " +
-                   std::to_string(path_tracer::kMaxTreeLevels));
   const Treelets treelets = pack_treelets(bvh, {shape.resident_nodes, shape.treelet_nodes});
   image.slots = treelets.slots();
   require_names("slots of nodes", image.slots);

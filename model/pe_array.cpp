@@ -12,6 +12,15 @@ constexpr auto kVectorLoad = std::size_t(cn::InstructionClass::sram_vector_load)
 constexpr auto kFirstVector = std::size_t(cn::InstructionClass::fp64_add_vector4);
 constexpr auto kLastVector = std::size_t(cn::InstructionClass::fp32_multiply_add_vector4);
 
+// A kernel issues far fewer instructions than 2^31, and x86-64 converts and multiplies numbers of 32 bits
+// several at a time.
+double as_double(std::uint64_t instructions) {
+  return double(static_cast<std::int32_t>(instructions));
+}
+std::uint64_t times_lanes(std::uint64_t instructions, std::uint64_t lanes) {
+  return std::uint64_t{static_cast<std::uint32_t>(instructions)} * static_cast<std::uint32_t>(lanes);
+}
+
 }  // namespace
 
 PeArray::PeArray(const sc_core::sc_module_name& name, const ChipConfig& config)
@@ -22,15 +31,17 @@ PeArray::PeArray(const sc_core::sc_module_name& name, const ChipConfig& config)
       cycles_(config.poly.cycles) {}
 
 double PeArray::poly_cycles(const cn::IssueCounts& counts) const {
-  double sum = 0;
+  // Four sums side by side: one would make each addition wait for the one before.
+  constexpr std::size_t kSums = 4;
+  static_assert(kMono % kSums == 0);
+  double sums[kSums] = {};
+  for (std::size_t i = 0; i < kMono; i += kSums)
+    for (std::size_t k = 0; k < kSums; ++k) sums[k] += as_double(counts.by_class[i + k]) * cycles_[i + k];
+  const double sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   double vector_arithmetic = 0;
-  for (std::size_t i = 0; i < kMono; ++i) {
-    // Signed: before AVX-512 unsigned numbers take five times as long to convert.
-    const double cycles = double(static_cast<std::int64_t>(counts.by_class[i])) * cycles_[i];
-    sum += cycles;
-    if (i >= kFirstVector && i <= kLastVector) vector_arithmetic += cycles;
-  }
-  const double vector_loads = double(counts.by_class[kVectorLoad]) * cycles_[kVectorLoad];
+  for (std::size_t i = kFirstVector; i <= kLastVector; ++i)
+    vector_arithmetic += as_double(counts.by_class[i]) * cycles_[i];
+  const double vector_loads = as_double(counts.by_class[kVectorLoad]) * cycles_[kVectorLoad];
   return vector_loads_overlap_ ? sum - std::min(vector_loads, vector_arithmetic) : sum;
 }
 
@@ -45,7 +56,7 @@ PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued,
     issue_cycles += node_cycles;
     statistics.enabled_lane_cycles += node_cycles * double(node.enabled_lanes);
     for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
-      statistics.executed.by_class[i] += node.counts.by_class[i] * node.enabled_lanes;
+      statistics.executed.by_class[i] += times_lanes(node.counts.by_class[i], node.enabled_lanes);
   });
   const double poly = issue_cycles * code_quality_factor_;
   const double mono = double(counts.by_class[kMono]) * cycles_[kMono] * code_quality_factor_;

@@ -42,6 +42,7 @@ Json program_json(const RenderOptions& options) {
           {"treelet_nodes", tree.treelet_nodes},
           {"resident_nodes", tree.resident_nodes},
           {"stack_entries", tree.stack_entries},
+          {"visits", tree.visits},
           {"samples", options.work.samples}};
 }
 

@@ -100,6 +100,8 @@ TEST(ProgramConfigTest, ShapesOfTreesAreCheckedWhereThereIsOne) {
             "entries of the short stack: found 64, allowed is 0 to 32");
   EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, -1)),
             "entries of the short stack: found -1, allowed is 0 to 32");
+  for (const int visits : {0, 1, 1024}) EXPECT_EQ(error_of(tree_with(&TreeShape::visits, visits)), "");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::visits, -1)), "visits a turn: found -1, allowed is 0 to 1024");
   EXPECT_EQ(error_of(tree_with(&TreeShape::leaf_triangles, 0)),
             "triangles a leaf: found 0, allowed is 1 to 8");
   EXPECT_EQ(error_of(tree_with(&TreeShape::leaf_triangles, 9)),

@@ -176,10 +176,12 @@ std::vector<TreeShape> shapes() {
 std::string describe(const TreeShape& shape) {
   return "format " + std::to_string(int(shape.layout.format)) + ", " + std::to_string(shape.leaf_triangles) +
          " triangles a leaf, " + std::to_string(shape.treelet_nodes) + " nodes a treelet, " +
-         std::to_string(shape.resident_nodes) + " resident, stack of " + std::to_string(shape.stack_entries);
+         std::to_string(shape.resident_nodes) + " resident, stack of " + std::to_string(shape.stack_entries) +
+         ", " + std::to_string(shape.visits) + " visits a turn";
 }
 
 constexpr int kStacks[] = {0, 1, 2, 8, 32};
+constexpr int kVisits[] = {0, 1, 2, 4};
 
 class TraversalEquality : public testing::TestWithParam<NamedMesh> {
  protected:
@@ -191,6 +193,7 @@ TEST_P(TraversalEquality, EveryRayHitsWhatBruteForceHits) {
   TestRays source(scene, 19);
   int hits = 0;
   int rays_in_all = 0;
+  std::size_t searches = 0;
   for (const TreeShape& shape : shapes()) {
     SearchScene searched = search_scene(scene, shape);
     for (int batch = 0; batch < 3; ++batch) {
@@ -203,6 +206,7 @@ TEST_P(TraversalEquality, EveryRayHitsWhatBruteForceHits) {
       const std::vector<SearchHit> expected = search_.brute_force(searched, rays);
       for (const int stack : kStacks) {
         searched.shape.stack_entries = stack;
+        searched.shape.visits = kVisits[searches++ % std::size(kVisits)];
         const std::vector<SearchHit> found = search_.through_tree(searched, queued, batch % 2 == 0);
         for (std::size_t i = 0; i < rays.size(); ++i)
           ASSERT_TRUE(same(found[i], expected[i])) << describe(searched.shape) << ": a ray hits "
@@ -238,6 +242,7 @@ void expect_the_same_lights_seen(const Scene& scene, RaySearch& search) {
     };
     for (const int stack : {0, 2, 8}) {
       searched.shape.stack_entries = stack;
+      searched.shape.visits = kVisits[std::size_t(shape.leaf_triangles + stack) % std::size(kVisits)];
       const std::vector<SearchHit> found = search.through_tree(searched, queued, stack == 2);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const bool is_segment = rays[i].light_face == path_tracer::kNoFace;
@@ -289,16 +294,19 @@ TEST(TraversalTurns, AreFewWhereTreeletsAndStacksAreLarge) {
   TestRays source(scene, 5);
   std::vector<QueuedRay> rays;
   for (int i = 0; i < RaySearch::kPes; ++i) rays.push_back({source.ray(0), 0, 0});
-  const auto turns = [&](int treelet_nodes, int stack_entries) {
+  const auto turns = [&](int treelet_nodes, int stack_entries, int visits = 0) {
     RaySearch search(cn::widest_level());
-    search.through_tree(search_scene(scene, {{NodeFormat::fp32, 4}, 1, treelet_nodes, 2, stack_entries}),
-                        rays, false);
+    search.through_tree(
+        search_scene(scene, {{NodeFormat::fp32, 4}, 1, treelet_nodes, 2, stack_entries, visits}), rays,
+        false);
     return double(search.turns()) / double(rays.size());
   };
   const double with_both = turns(16, 32);
   EXPECT_LT(with_both, 30);
   EXPECT_LT(with_both, turns(1, 32));
   EXPECT_LT(with_both, turns(16, 0));
+  EXPECT_LT(with_both, turns(16, 32, 2));
+  EXPECT_LT(turns(16, 32, 2), turns(16, 32, 1));
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ inline void observe(Access access, const poly<std::int32_t>& address, int bytes)
 /// number
 template <class T>
 inline poly<T> load_at(const poly<std::int32_t>& address) {
-  static_assert(sizeof(T) == 8 || std::is_integral_v<T>);
+  static_assert(sizeof(T) == 8 || (sizeof(T) == 4 && std::is_integral_v<T>));
   issue(InstructionClass::sram, sizeof(T) / 4);
   indexed_detail::observe(Access::read, address, sizeof(T));
   const Lanes<std::uint64_t> words =

@@ -262,6 +262,20 @@ void save_in_pe_order(const StripTransfer& strip) {
     strip.place[lane] = memory + mono.first + ((strip.enabled >> lane) & 1u ? address[lane] : valid);
 }
 
+/// Records of rays lie all over mono memory; what the next strip loads is on its way while this one's is
+/// moved.
+[[gnu::always_inline]] inline void prefetch_strip(const Transfer& transfer, int first_pe,
+                                                  const std::uint8_t* mono) {
+  constexpr int kLineBytes = 64;
+  const MonoAddress* const address = transfer.mono.by_pe + first_pe;
+  for (unsigned lanes = transfer.enabled.strip_bits(first_pe / kStripLanes); lanes != 0; lanes &= lanes - 1) {
+    const std::uint8_t* const place = mono + transfer.mono.first + address[__builtin_ctz(lanes)];
+    const std::uint8_t* const end = place + transfer.poly.size_bytes;
+    for (const std::uint8_t* line = place; line < end; line += kLineBytes) __builtin_prefetch(line);
+    __builtin_prefetch(end - 1);
+  }
+}
+
 /// @tparam tail words beyond whole blocks
 template <Direction direction, int tail>
 void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
@@ -277,6 +291,9 @@ void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono)
   for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {
     strip.enabled = transfer.enabled.strip_bits(first_pe / kStripLanes);
     if (strip.enabled == 0) continue;
+    if (direction == Direction::mono_to_poly && transfer.mono.by_pe != nullptr &&
+        first_pe + kStripLanes < num_pes)
+      prefetch_strip(transfer, first_pe + kStripLanes, mono);
     strip.row = row + first_pe;
     find_places(transfer.mono, first_pe, mono, strip);
     if (may_overlap && !is_ascending(strip)) {

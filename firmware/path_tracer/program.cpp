@@ -41,6 +41,7 @@ void validate(const TreeShape& tree) {
   range("nodes a treelet", tree.treelet_nodes, 1, kMaxTreeletNodes);
   range("resident nodes", tree.resident_nodes, 1, kMaxTreeletNodes);
   range("entries of the short stack", tree.stack_entries, 0, kMaxStackEntries);
+  range("visits a turn", tree.visits, 0, kMaxVisits);
   require((tree.stack_entries & (tree.stack_entries - 1)) == 0, "entries of the short stack",
           std::to_string(tree.stack_entries),
           "0 or a power of two up to " + std::to_string(kMaxStackEntries));

@@ -59,16 +59,21 @@ class Traveller {
         limit_(cn::high_word(limit)),
         way_(way) {}
 
-  /// To the next leaf, to a node that is not here, or to the end.
+  /// To the next leaf, to a node that is not here, to the end, or as far as a turn goes.
   void travel() {
-    cn::poly_while([&] { return can_go_on(); },
-                   [&] {
-                     cn::poly_if_any(way_.node == kNextOnStack, [&] { pop(); });
-                     cn::poly_if_any(is_here(way_.node) & (way_.leaf_count == 0), [&] { visit(); });
-                   });
+    if (tree_.shape.visits == 0) {
+      cn::poly_while([&] { return can_go_on(); }, [&] { go_on(); });
+    } else {
+      for (int visit = 0; visit < tree_.shape.visits; ++visit) go_on();
+    }
   }
 
  private:
+  void go_on() {
+    cn::poly_if_any((way_.node == kNextOnStack) & (way_.leaf_count == 0), [&] { pop(); });
+    cn::poly_if_any(is_here(way_.node) & (way_.leaf_count == 0), [&] { visit(); });
+  }
+
   mask is_resident(const poly<std::int32_t>& node) const { return node < tree_.shape.resident_nodes; }
   mask is_here(const poly<std::int32_t>& node) const {
     const poly<std::int32_t> in_treelet = node - treelet_;

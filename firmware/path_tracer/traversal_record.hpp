@@ -47,6 +47,7 @@ inline constexpr int kTrailBits = 3;       ///< 0 to kTraversalWidth
 inline constexpr int kMaxTreeLevels = 64 / kTrailBits;
 inline constexpr int kMaxStackEntries = 32;
 inline constexpr int kMaxLeafTriangles = 8;
+inline constexpr int kMaxVisits = 1024;
 inline constexpr int kMaxTreeletNodes = 1024;  ///< far beyond what a PE's SRAM holds
 
 /// The last records of the triangle array: each light's own triangles once more, so many a light, for shadow
@@ -57,9 +58,12 @@ inline constexpr int kLightRun = 2;
 struct TreeShape {
   NodeLayout layout{NodeFormat::fp32, kTraversalWidth};
   int resident_nodes = 8;  ///< slots [0, resident_nodes) stay in every PE's SRAM
-  int treelet_nodes = 4;   ///< further slots are loaded so many at a time
+  int treelet_nodes = 2;   ///< further slots are loaded so many at a time
   int leaf_triangles = 2;  ///< at most
   int stack_entries = 8;   ///< a power of two, or 0
+  /// Nodes that a ray visits in a turn, at most; 0: as many as are in SRAM. The PEs take the steps of the one
+  /// that has the most, so a ray that has many does better to go on in the next turn, with others that have.
+  int visits = 4;
 
   int resident_bytes() const { return resident_nodes * layout.node_bytes(); }
   int treelet_bytes() const { return treelet_nodes * layout.node_bytes(); }

@@ -173,6 +173,10 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
       .add_option("--stack-entries", tree.stack_entries,
                   "Entries of a ray's short stack: 0 or a power of two")
       ->capture_default_str();
+  command
+      .add_option("--visits", tree.visits,
+                  "Nodes that a ray visits before PEs load again, at most; 0: all that are in SRAM")
+      ->capture_default_str();
 }
 
 std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig& chip,

@@ -212,7 +212,8 @@ std::vector<RunParameter> declare() {
           tree_integer<&TreeShape::leaf_triangles, 1, path_tracer::kMaxLeafTriangles>("leaf_triangles"),
           tree_integer<&TreeShape::treelet_nodes, 1, path_tracer::kMaxTreeletNodes>("treelet_nodes"),
           tree_integer<&TreeShape::resident_nodes, 1, path_tracer::kMaxTreeletNodes>("resident_nodes"),
-          tree_integer<&TreeShape::stack_entries, 0, path_tracer::kMaxStackEntries>("stack_entries")};
+          tree_integer<&TreeShape::stack_entries, 0, path_tracer::kMaxStackEntries>("stack_entries"),
+          tree_integer<&TreeShape::visits, 0, path_tracer::kMaxVisits>("visits")};
 }
 
 void refuse(const Setting& setting, const std::string& allowed) {

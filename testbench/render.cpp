@@ -50,6 +50,12 @@ class ProgressRelay {
   bool interrupted_ = false;
 };
 
+void require_mono_memory(const std::string& least, std::uint64_t bytes, const model::ChipConfig& chip) {
+  if (bytes <= chip.ddr.size_bytes) return;
+  throw InputError("scene and bins need " + least + std::to_string(bytes) +
+                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
+}
+
 /// What both kinds of run have around the machine.
 class Run {
  public:
@@ -92,8 +98,19 @@ class Run {
   }
 
  private:
+  /// The image of ten million triangles takes a minute; that their records alone are too many is known
+  /// before.
+  static void require_memory_for_triangles(const Scene& scene, const RenderOptions& options) {
+    const int root = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
+    const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, root};
+    const path_tracer::Layout layout =
+        path_tracer::make_layout(least, options.chip.chip.pes, options.program);
+    require_mono_memory("at least ", layout.total_bytes, options.chip);
+  }
+
   static MonoImage checked_image(const Scene& scene, const RenderOptions& options) {
     path_tracer::validate(options.program);
+    require_memory_for_triangles(scene, options);
     MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
     require_mono_memory(image, options.chip);
     return image;
@@ -118,9 +135,7 @@ std::unique_ptr<NativeMachine> native_machine(const model::ChipConfig& chip, std
 }  // namespace
 
 void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) {
-  if (image.layout.total_bytes <= chip.ddr.size_bytes) return;
-  throw InputError("scene and bins need " + std::to_string(image.layout.total_bytes) +
-                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
+  require_mono_memory("", image.layout.total_bytes, chip);
 }
 
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,

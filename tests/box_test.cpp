@@ -4,37 +4,26 @@
 #include <limits>
 #include <random>
 
-#include "tests/support/strip_fixture.hpp"
+#include "tests/support/vectors.hpp"
 
 namespace {
 
 using cn::poly;
 using cn::vec3;
+using test_support::kComponents;
 using test_support::load;
+using test_support::load3;
 using test_support::PerPe;
+using test_support::Ray;
 using test_support::store;
+using test_support::Vector;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-using Vector = vec3<double>;
-constexpr double Vector::*kComponents[] = {&Vector::x, &Vector::y, &Vector::z};
 
 struct Box {
   Vector lower;
   Vector upper;
 };
-
-struct Ray {
-  Vector origin;
-  Vector direction;
-};
-
-vec3<poly<double>> load3(const PerPe<Vector>& vectors) {
-  PerPe<double> parts[3];
-  for (const Vector& v : vectors)
-    for (int axis = 0; axis < 3; ++axis) parts[axis].push_back(v.*kComponents[axis]);
-  return {load(parts[0]), load(parts[1]), load(parts[2])};
-}
 
 class BoxTest : public test_support::StripFixture {
  protected:

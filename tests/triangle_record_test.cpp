@@ -7,7 +7,7 @@
 #include <random>
 
 #include "firmware/path_tracer/triangle.hpp"
-#include "tests/support/strip_fixture.hpp"
+#include "tests/support/vectors.hpp"
 
 namespace {
 
@@ -15,12 +15,13 @@ using cn::poly;
 using cn::vec3;
 using path_tracer::kNoFace;
 using path_tracer::TriangleRecord;
+using test_support::kComponents;
 using test_support::load;
+using test_support::load3;
 using test_support::PerPe;
+using test_support::Ray;
 using test_support::store;
-
-using Vector = vec3<double>;
-constexpr double Vector::*kComponents[] = {&Vector::x, &Vector::y, &Vector::z};
+using test_support::Vector;
 
 double length(const Vector& v) {
   return std::hypot(v.x, v.y, v.z);
@@ -33,18 +34,6 @@ struct Shape {
 
   Vector at(double u, double v) const { return vertex + edge1 * u + edge2 * v; }
 };
-
-struct Ray {
-  Vector origin;
-  Vector direction;
-};
-
-vec3<poly<double>> load3(const PerPe<Vector>& vectors) {
-  PerPe<double> parts[3];
-  for (const Vector& v : vectors)
-    for (int axis = 0; axis < 3; ++axis) parts[axis].push_back(v.*kComponents[axis]);
-  return {load(parts[0]), load(parts[1]), load(parts[2])};
-}
 
 template <class Source, class Member>
 PerPe<Vector> all(const std::vector<Source>& sources, Member Source::*member) {

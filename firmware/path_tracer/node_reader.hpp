@@ -22,23 +22,47 @@ inline const poly<double>& component(const vec3<poly<double>>& v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
+/// Of the four children's boxes the planes across an axis.
+struct Planes {
+  poly4<double> first;  ///< that the ray meets
+  poly4<double> last;
+};
+
 /// The coordinates of the four children in the components of their boxes (lower x, y, z, upper x, y, z), in
-/// double precision whatever the format; the same numbers as the host's decode_box() makes of them.
+/// double precision whatever the format; the same numbers as the host's decode_box() makes of them. Where a
+/// ray goes backward along the axis, the upper planes come first: they are read from their places
+/// (IndexedRecord::chosen).
 template <NodeFormat format>
 class NodeReader;
+
+template <class T>
+inline poly<T> chosen(const mask& condition, const poly<T>& if_set, const poly<T>& otherwise) {
+  return cn::IndexedRecord::chosen(condition, if_set, otherwise);
+}
 
 template <>
 class NodeReader<NodeFormat::fp64> {
  public:
   explicit NodeReader(const cn::IndexedRecord& node) : node_(node) {}
 
+  Planes planes(int axis, const mask& backward) const {
+    const poly4<double> lower = row(axis);
+    const poly4<double> upper = row(kAxes + axis);
+    return {chosen4(backward, upper, lower), chosen4(backward, lower, upper)};
+  }
+
+ private:
   poly4<double> row(int component) const {
     const int at = component * kTraversalWidth * 8;
     return {node_.load<double>(at), node_.load<double>(at + 8), node_.load<double>(at + 16),
             node_.load<double>(at + 24)};
   }
+  static poly4<double> chosen4(const mask& condition, const poly4<double>& if_set,
+                               const poly4<double>& otherwise) {
+    const auto element = [&](int i) { return chosen(condition, if_set[i], otherwise[i]); };
+    return {element(0), element(1), element(2), element(3)};
+  }
 
- private:
   const cn::IndexedRecord& node_;
 };
 
@@ -47,15 +71,27 @@ class NodeReader<NodeFormat::fp32> {
  public:
   explicit NodeReader(const cn::IndexedRecord& node) : node_(node) {}
 
-  poly4<double> row(int component) const {
-    const int at = component * kTraversalWidth * 4;
-    const poly<std::uint64_t> first = node_.load<std::uint64_t>(at);
-    const poly<std::uint64_t> second = node_.load<std::uint64_t>(at + 8);
-    return {cn::widen_float(cn::low_word(first)), cn::widen_float(cn::high_word(first)),
-            cn::widen_float(cn::low_word(second)), cn::widen_float(cn::high_word(second))};
+  Planes planes(int axis, const mask& backward) const {
+    const Row lower = row(axis);
+    const Row upper = row(kAxes + axis);
+    return {widen(chosen(backward, upper.left, lower.left), chosen(backward, upper.right, lower.right)),
+            widen(chosen(backward, lower.left, upper.left), chosen(backward, lower.right, upper.right))};
   }
 
  private:
+  struct Row {  ///< two children each
+    poly<std::uint64_t> left;
+    poly<std::uint64_t> right;
+  };
+  Row row(int component) const {
+    const int at = component * kTraversalWidth * 4;
+    return {node_.load<std::uint64_t>(at), node_.load<std::uint64_t>(at + 8)};
+  }
+  static poly4<double> widen(const poly<std::uint64_t>& left, const poly<std::uint64_t>& right) {
+    return {cn::widen_float(cn::low_word(left)), cn::widen_float(cn::high_word(left)),
+            cn::widen_float(cn::low_word(right)), cn::widen_float(cn::high_word(right))};
+  }
+
   const cn::IndexedRecord& node_;
 };
 
@@ -72,15 +108,22 @@ class NodeReader<NodeFormat::quantised8> {
     for (int i = 0; i < kAxes; ++i) steps_[i].become(node.load<std::uint64_t>(kFrameBytes + i * 8));
   }
 
-  poly4<double> row(int component) const {
-    const poly<std::uint64_t>& two_rows = steps_[component / 2];
-    const poly<std::uint32_t> steps = component % 2 == 0 ? cn::low_word(two_rows) : cn::high_word(two_rows);
-    const poly4<double> numbers{byte(steps, 0), byte(steps, 1), byte(steps, 2), byte(steps, 3)};
-    const int axis = component % kAxes;
-    return cn::multiply_add(numbers, same4(step_[axis]), same4(origin_[axis]));
+  Planes planes(int axis, const mask& backward) const {
+    const poly<std::uint32_t> lower = row(axis);
+    const poly<std::uint32_t> upper = row(kAxes + axis);
+    return {coordinates(axis, chosen(backward, upper, lower)),
+            coordinates(axis, chosen(backward, lower, upper))};
   }
 
  private:
+  poly<std::uint32_t> row(int component) const {
+    const poly<std::uint64_t>& two_rows = steps_[component / 2];
+    return component % 2 == 0 ? cn::low_word(two_rows) : cn::high_word(two_rows);
+  }
+  poly4<double> coordinates(int axis, const poly<std::uint32_t>& steps) const {
+    const poly4<double> numbers{byte(steps, 0), byte(steps, 1), byte(steps, 2), byte(steps, 3)};
+    return cn::multiply_add(numbers, same4(step_[axis]), same4(origin_[axis]));
+  }
   static poly<double> byte(const poly<std::uint32_t>& word, int index) {
     return cn::convert<double>((word >> (8 * index)) & poly<std::uint32_t>(0xffu));
   }
@@ -120,9 +163,7 @@ class NodeVisitor {
   VisitOrder visit(const PolyAddress& address, const poly<std::uint32_t>& limit) const {
     const cn::IndexedRecord node(address);
     const NodeReader<format> reader(node);
-    poly4<double> entry[kAxes];
-    poly4<double> exit[kAxes];
-    for_each_axis(reader, entry, exit, std::make_index_sequence<kAxes>());
+    const Slabs4 slabs = both(both(meet_planes(reader, 0), meet_planes(reader, 1)), meet_planes(reader, 2));
     const int references = layout_.reference_offset(0);
     const poly<std::uint64_t> first = node.load<std::uint64_t>(references);
     const poly<std::uint64_t> second = node.load<std::uint64_t>(references + 8);
@@ -130,8 +171,8 @@ class NodeVisitor {
                                                             cn::low_word(second), cn::high_word(second)};
     VisitOrder order;
     for (int i = 0; i < kTraversalWidth; ++i) {
-      const poly<double> from = from_origin(entry[0][i], entry[1][i], entry[2][i]);
-      const poly<double> to = cn::min(cn::min(exit[0][i], exit[1][i]), exit[2][i]);
+      const poly<double> from = cn::max(poly<double>(0.0), slabs.entry[i]);
+      const poly<double>& to = slabs.exit[i];
       const poly<std::uint32_t> key = cn::high_word(from);
       const mask met = (from <= to) & (key <= limit) & (reference[i] != PackedReference::kNowhere);
       order.entry[i].become(
@@ -146,27 +187,25 @@ class NodeVisitor {
   }
 
  private:
-  template <std::size_t... axis>
-  void for_each_axis(const NodeReader<format>& reader, poly4<double> (&entry)[kAxes],
-                     poly4<double> (&exit)[kAxes], std::index_sequence<axis...>) const {
-    (meet_planes(reader, int(axis), entry[axis], exit[axis]), ...);
+  /// The part of the ray within the four boxes, as far as some axes go. Each axis is done with before the
+  /// next, or the host has more numbers at hand than registers.
+  struct Slabs4 {
+    poly4<double> entry;
+    poly4<double> exit;
+  };
+
+  static Slabs4 both(const Slabs4& a, const Slabs4& b) {
+    const auto entry = [&](int i) { return cn::max(a.entry[i], b.entry[i]); };
+    const auto exit = [&](int i) { return cn::min(a.exit[i], b.exit[i]); };
+    return {{entry(0), entry(1), entry(2), entry(3)}, {exit(0), exit(1), exit(2), exit(3)}};
   }
 
-  void meet_planes(const NodeReader<format>& reader, int axis, poly4<double>& entry,
-                   poly4<double>& exit) const {
+  Slabs4 meet_planes(const NodeReader<format>& reader, int axis) const {
     const poly4<double> origin = same4(component(ray_.origin(), axis));
     const poly4<double> scale = same4(component(ray_.minus_inverse(), axis));
-    const poly4<double> lower = reader.row(axis);
-    const poly4<double> upper = reader.row(kAxes + axis);
+    const Planes planes = reader.planes(axis, backward_[axis]);
     cn::issue(cn::InstructionClass::int32_alu, 2);  // where the sign of the direction has them read
-    entry.become((origin - chosen4(backward_[axis], upper, lower)) * scale);
-    exit.become((origin - chosen4(backward_[axis], lower, upper)) * scale);
-  }
-
-  static poly4<double> chosen4(const mask& condition, const poly4<double>& if_set,
-                               const poly4<double>& otherwise) {
-    const auto element = [&](int i) { return cn::IndexedRecord::chosen(condition, if_set[i], otherwise[i]); };
-    return {element(0), element(1), element(2), element(3)};
+    return {(origin - planes.first) * scale, (origin - planes.last) * scale};
   }
 
   const BoxRay& ray_;

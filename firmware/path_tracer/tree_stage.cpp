@@ -154,13 +154,9 @@ void TreeStage::count_pass(std::size_t pass, const LaneMask& rays) {
   count_lanes(pass, rays);
 }
 
-void TreeStage::count_rays(std::size_t pass, std::uint64_t rays) {
-  TraversalCounts& counts = context_.counts.traversal;
-  if (counts.rays.size() <= pass) {
-    counts.rays.resize(pass + 1);
-    counts.lanes.resize(pass + 1);
-  }
-  counts.rays[pass] += rays;
+void TreeStage::make_room_for_counts(std::size_t pass) {
+  context_.counts.traversal.rays.resize(pass + 1);
+  context_.counts.traversal.lanes.resize(pass + 1);
 }
 
 void TreeStage::count_lanes(std::size_t pass, const LaneMask& rays) {

@@ -68,7 +68,10 @@ class TreeStage : public Stage {
   void finish(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays);
   void save_hits(std::uint64_t step);
   void count_pass(std::size_t pass, const LaneMask& rays);
-  void count_rays(std::size_t pass, std::uint64_t rays);
+  void count_rays(std::size_t pass, std::uint64_t rays) {
+    if (context_.counts.traversal.rays.size() <= pass) make_room_for_counts(pass);
+    context_.counts.traversal.rays[pass] += rays;
+  }
   /// Of a pass that has rays, which may be fewer than these.
   void count_lanes(std::size_t pass, const LaneMask& rays);
 
@@ -83,6 +86,7 @@ class TreeStage : public Stage {
     PolyField<MonoAddress> surface_place_to;
   };
   Hits hits(std::uint64_t step) const;
+  void make_room_for_counts(std::size_t pass);
 
   LaneMask finished_;
 };

@@ -53,11 +53,11 @@ struct Visits {
 };
 Visits visits_of_a_ray(std::size_t triangles) {
   const double doublings = std::max(0.0, std::log2(double(std::max<std::size_t>(1, triangles)) / 50));
-  return {2.9, 0.22 * doublings, 3.7 + 0.21 * doublings};
+  return {3.0, 0.25 * doublings, 4.1 + 0.28 * doublings};
 }
 
 /// What the kernels of a turn take, in tests of a triangle, and the share of PEs that have a ray; as above.
-constexpr double kTrianglesOfATurn = 36;
+constexpr double kTrianglesOfATurn = 28;
 constexpr double kOccupancy = 0.8;
 
 /// When the data cache does not hold all triangles from one block to the next.

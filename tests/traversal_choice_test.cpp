@@ -1,0 +1,92 @@
+#include "testbench/traversal_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware/cn/machine.hpp"
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "model/chip_presets.hpp"
+#include "testbench/native_machine.hpp"
+
+namespace {
+
+using path_tracer::ProgramConfig;
+using path_tracer::Traversal;
+using path_tracer::TreeShape;
+using testbench::choose_traversal;
+using testbench::estimate_traversal;
+
+const model::ChipConfig kChip = model::preset("csx600");
+
+TEST(TraversalChoice, ABoxDoesNotPayForATreeAndAMeshDoes) {
+  EXPECT_EQ(choose_traversal(1, TreeShape{}, kChip).traversal, Traversal::brute_force);
+  EXPECT_EQ(choose_traversal(36, TreeShape{}, kChip).traversal, Traversal::brute_force);
+  EXPECT_EQ(choose_traversal(1000, TreeShape{}, kChip).traversal, Traversal::refill);
+  EXPECT_EQ(choose_traversal(10000000, TreeShape{}, kChip).traversal, Traversal::refill);
+}
+
+TEST(TraversalChoice, SaysWhy) {
+  const std::string reason = choose_traversal(1000, TreeShape{}, kChip).reason;
+  EXPECT_EQ(reason.find("1000 triangles: about "), 0u) << reason;
+  EXPECT_NE(reason.find("by brute force"), std::string::npos) << reason;
+}
+
+TEST(TraversalChoice, CostsGrowWithTheScene) {
+  testbench::TraversalCosts before = estimate_traversal(1, TreeShape{}, kChip);
+  for (std::size_t triangles = 2; triangles < 20000000; triangles *= 2) {
+    const testbench::TraversalCosts costs = estimate_traversal(triangles, TreeShape{}, kChip);
+    EXPECT_GT(costs.brute_force, before.brute_force);
+    EXPECT_GE(costs.tree, before.tree);
+    before = costs;
+  }
+}
+
+/// The tree lives on programmed I/O, brute force on the mono data cache.
+TEST(TraversalChoice, FollowsTheChip) {
+  model::ChipConfig slow_io = kChip;
+  slow_io.pio.per_pe_cycles = 400;
+  EXPECT_GT(estimate_traversal(100, TreeShape{}, slow_io).tree,
+            3 * estimate_traversal(100, TreeShape{}, kChip).tree);
+  EXPECT_EQ(choose_traversal(200, TreeShape{}, kChip).traversal, Traversal::refill);
+  EXPECT_EQ(choose_traversal(200, TreeShape{}, slow_io).traversal, Traversal::brute_force);
+}
+
+/// Whether the program finds room in the SRAM, which is of the whole chip's PEs.
+bool fits(const ProgramConfig& program) {
+  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 64}, kChip.chip.pes, program);
+  testbench::NativeMachine machine(kChip.chip.pes, kChip.poly.sram_bytes, layout.total_bytes);
+  try {
+    path_tracer::PathTracer(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), program, layout,
+                            {});
+  } catch (const std::exception&) {
+    return false;
+  }
+  return true;
+}
+
+TEST(ResidentNodes, AreAsManyAsFit) {
+  for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill, Traversal::packets})
+    for (const int n : {0, 1}) {
+      ProgramConfig program;
+      program.traversal = traversal;
+      program.n = n;
+      program.tree.resident_nodes = testbench::kAsManyAsFit;
+      testbench::complete_traversal(1000000, kChip, program);
+      EXPECT_GT(program.tree.resident_nodes, 1);
+      EXPECT_TRUE(fits(program)) << program.tree.resident_nodes;
+      ++program.tree.resident_nodes;
+      EXPECT_FALSE(fits(program)) << program.tree.resident_nodes;
+    }
+}
+
+TEST(ResidentNodes, AreNoMoreThanATreeHas) {
+  ProgramConfig program;
+  program.traversal = Traversal::refill;
+  program.tree.resident_nodes = testbench::kAsManyAsFit;
+  testbench::complete_traversal(3, kChip, program);
+  EXPECT_LE(program.tree.resident_nodes, 3);
+  program.tree.resident_nodes = 2;
+  testbench::complete_traversal(1000000, kChip, program);
+  EXPECT_EQ(program.tree.resident_nodes, 2) << "as it was asked for";
+}
+
+}  // namespace

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "testbench/error.hpp"
 #include "testbench/render.hpp"
 #include "testbench/scene/generated_scene.hpp"
 #include "tests/support/native_paths.hpp"
@@ -61,6 +62,9 @@ std::vector<Variation> variations() {
   variations.push_back({"large pieces", [](RenderOptions& o) {
                           o.program.tree = {{NodeFormat::fp64, 4}, 8, 16, 8, 32};
                         }});
+  for (const int visits : {0, 1})
+    variations.push_back({std::to_string(visits) + " visits a turn",
+                          [=](RenderOptions& o) { o.program.tree.visits = visits; }});
   variations.push_back({"x86-64-v2", [](RenderOptions& o) { o.level = path_tracer::Level::x86_64_v2; }});
   variations.push_back({"lights by solid angle", [](RenderOptions& o) {
                           o.program.light_sampling = path_tracer::LightSampling::solid_angle;
@@ -112,6 +116,33 @@ TEST_F(TraversalRender, ShowsOpenAndClosedScenes) {
   expect_images_of_brute_force(test_support::triangle_soup(60, 3, {9, 7}), Program::full);
   expect_images_of_brute_force(test_support::closed_cube(0.8, 1.0, {6, 4}), Program::full);
   expect_images_of_brute_force(test_support::small_cornell_box({12, 12}), Program::direct);
+}
+
+/// Camera rays of far pixels side by side: what is next to whom changes no pixel.
+TEST_F(TraversalRender, ShowsTheSameImageInAnyOrderOfPixels) {
+  const Scene scene = scene_of(GeneratedScene::blob);  // of 192 pixels
+  const RenderResult in_order =
+      testbench::render_natively(scene, options_for(Program::full, Traversal::brute_force));
+  for (const int stride : {5, 77, 191, 193, 1000001})
+    for (const Traversal traversal : {Traversal::brute_force, Traversal::refill, Traversal::packets}) {
+      RenderOptions options = options_for(Program::full, traversal);
+      options.program.pixel_stride = stride;
+      EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), in_order.film.sha256())
+          << stride << ", traversal " << int(traversal);
+    }
+}
+
+TEST_F(TraversalRender, RefusesAStrideThatLeavesPixelsOut) {
+  RenderOptions options = options_for(Program::full, Traversal::brute_force);
+  options.program.pixel_stride = 9;
+  try {
+    testbench::render_natively(scene_of(GeneratedScene::blob), options);
+    FAIL() << "no error";
+  } catch (const testbench::InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "pixel stride: found 9, which has a divisor in common with the 192 pixels of the film; "
+                 "allowed is any number without");
+  }
 }
 
 TEST_F(TraversalRender, CountsEachRayOnceInItsFirstPass) {

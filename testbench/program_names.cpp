@@ -1,6 +1,17 @@
 #include "testbench/program_names.hpp"
 
 namespace testbench {
+namespace {
+
+/// The values of an enumeration, whose names are given in its order.
+template <class Value>
+std::map<std::string, Value> by_name(const std::vector<std::string>& names) {
+  std::map<std::string, Value> values;
+  for (std::size_t i = 0; i < names.size(); ++i) values[names[i]] = Value(i);
+  return values;
+}
+
+}  // namespace
 
 const char* program_name(path_tracer::Program program) {
   static constexpr const char* kNames[] = {"segments", "direct", "full"};
@@ -26,10 +37,7 @@ const std::string& traversal_name(path_tracer::Traversal traversal) {
 }
 
 std::map<std::string, path_tracer::Traversal> traversals_by_name() {
-  std::map<std::string, path_tracer::Traversal> traversals;
-  for (std::size_t i = 0; i < traversal_names().size(); ++i)
-    traversals[traversal_names()[i]] = path_tracer::Traversal(i);
-  return traversals;
+  return by_name<path_tracer::Traversal>(traversal_names());
 }
 
 const std::vector<std::string>& node_format_names() {
@@ -39,6 +47,10 @@ const std::vector<std::string>& node_format_names() {
 
 const std::string& node_format_name(path_tracer::NodeFormat format) {
   return node_format_names().at(std::size_t(format));
+}
+
+std::map<std::string, path_tracer::NodeFormat> node_formats_by_name() {
+  return by_name<path_tracer::NodeFormat>(node_format_names());
 }
 
 }  // namespace testbench

@@ -17,5 +17,6 @@ const std::vector<std::string>& traversal_names();
 std::map<std::string, path_tracer::Traversal> traversals_by_name();
 const std::vector<std::string>& node_format_names();
 const std::string& node_format_name(path_tracer::NodeFormat format);
+std::map<std::string, path_tracer::NodeFormat> node_formats_by_name();
 
 }  // namespace testbench

@@ -101,8 +101,8 @@ class Run {
   /// The image of ten million triangles takes a minute; that their records alone are too many is known
   /// before.
   static void require_memory_for_triangles(const Scene& scene, const RenderOptions& options) {
-    const int root = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
-    const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, root};
+    const int slots = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
+    const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots};
     const path_tracer::Layout layout =
         path_tracer::make_layout(least, options.chip.chip.pes, options.program);
     require_mono_memory("at least ", layout.total_bytes, options.chip);

@@ -171,7 +171,7 @@ class NodeVisitor {
                                                             cn::low_word(second), cn::high_word(second)};
     VisitOrder order;
     for (int i = 0; i < kTraversalWidth; ++i) {
-      const poly<double> from = cn::max(poly<double>(0.0), slabs.entry[i]);
+      const poly<double> from = cn::max(poly<double>(0.0), slabs.entry[i]);  // not -0, see from_origin
       const poly<double>& to = slabs.exit[i];
       const poly<std::uint32_t> key = cn::high_word(from);
       const mask met = (from <= to) & (key <= limit) & (reference[i] != PackedReference::kNowhere);

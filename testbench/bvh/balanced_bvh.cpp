@@ -43,8 +43,7 @@ class Builder {
     BvhChild child;
     if (range.count > max_leaf_triangles_) {
       child.node = add_node(range);
-      const BvhNode& node = bvh_.nodes[std::size_t(child.node)];
-      for (int i = 0; i < node.child_count; ++i) child.box.include(node.child[std::size_t(i)].box);
+      child.box = bvh_.nodes[std::size_t(child.node)].box();
       return child;
     }
     child.first_triangle = range.first;

@@ -119,8 +119,7 @@ class Copier {
     if (branch.child_count == 0) return copy_leaf(branch);
     BvhChild child;
     child.node = copy_node(branch);
-    const BvhNode& node = bvh_.nodes[std::size_t(child.node)];
-    for (int i = 0; i < node.child_count; ++i) child.box.include(node.child[std::size_t(i)].box);
+    child.box = bvh_.nodes[std::size_t(child.node)].box();
     return child;
   }
 
@@ -139,29 +138,6 @@ class Copier {
   const std::vector<Box>& boxes_;
   Bvh& bvh_;
 };
-
-}  // namespace
-
-Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhOptions& options) {
-  std::vector<Box> boxes(triangles.size());
-  std::transform(triangles.begin(), triangles.end(), boxes.begin(), bounds_of);
-  return build_bvh(boxes, options);
-}
-
-int levels(const Bvh& bvh) {
-  std::vector<int> level(bvh.nodes.size(), 1);  // nodes stand before their children
-  int deepest = 0;
-  for (std::size_t node = 0; node < bvh.nodes.size(); ++node) {
-    deepest = std::max(deepest, level[node]);
-    for (int i = 0; i < bvh.nodes[node].child_count; ++i) {
-      const BvhChild& child = bvh.nodes[node].child[std::size_t(i)];
-      if (!child.is_leaf()) level[std::size_t(child.node)] = level[node] + 1;
-    }
-  }
-  return deepest;
-}
-
-namespace {
 
 /// No nodes when Embree gives up, as it does where triangles that lie in one place would go too deep.
 Bvh build_by_area(const std::vector<Box>& boxes, const BvhOptions& options) {
@@ -197,23 +173,42 @@ Bvh build_by_area(const std::vector<Box>& boxes, const BvhOptions& options) {
 
 }  // namespace
 
+Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhOptions& options) {
+  std::vector<Box> boxes(triangles.size());
+  std::transform(triangles.begin(), triangles.end(), boxes.begin(), bounds_of);
+  return build_bvh(boxes, options);
+}
+
+int levels(const Bvh& bvh) {
+  std::vector<int> level(bvh.nodes.size(), 1);  // nodes stand before their children
+  int deepest = 0;
+  for (std::size_t node = 0; node < bvh.nodes.size(); ++node) {
+    deepest = std::max(deepest, level[node]);
+    for (int i = 0; i < bvh.nodes[node].child_count; ++i) {
+      const BvhChild& child = bvh.nodes[node].child[std::size_t(i)];
+      if (!child.is_leaf()) level[std::size_t(child.node)] = level[node] + 1;
+    }
+  }
+  return deepest;
+}
+
 Bvh build_bvh(const std::vector<Box>& boxes, const BvhOptions& options) {
   check(options);
   if (boxes.empty()) return build_balanced_bvh(boxes, options.width, options.max_leaf_triangles);
   Bvh bvh = build_by_area(boxes, options);
-  if (bvh.nodes.empty() || levels(bvh) > options.max_depth)
-    bvh = build_balanced_bvh(boxes, options.width, options.max_leaf_triangles);
-  if (levels(bvh) > options.max_depth)
-    throw RunError("BVH of " + std::to_string(boxes.size()) + " triangles: " + std::to_string(levels(bvh)) +
+  if (!bvh.nodes.empty() && levels(bvh) <= options.max_depth) return bvh;
+  bvh = build_balanced_bvh(boxes, options.width, options.max_leaf_triangles);
+  const int least = levels(bvh);
+  if (least > options.max_depth)
+    throw RunError("BVH of " + std::to_string(boxes.size()) + " triangles: " + std::to_string(least) +
                    " levels at least, allowed are " + std::to_string(options.max_depth));
   return bvh;
 }
 
 double sah_cost(const Bvh& bvh, const BvhOptions& options) {
   if (bvh.nodes.empty()) return 0.0;
-  Box root;
+  const Box root = bvh.nodes[0].box();
   double cost = 0.0;
-  for (int i = 0; i < bvh.nodes[0].child_count; ++i) root.include(bvh.nodes[0].child[std::size_t(i)].box);
   for (const BvhNode& node : bvh.nodes)
     for (int i = 0; i < node.child_count; ++i) {
       const BvhChild& child = node.child[std::size_t(i)];

@@ -14,4 +14,10 @@ Box bounds_of(const Triangle& triangle) {
   return box;
 }
 
+Box BvhNode::box() const {
+  Box all;
+  for (int i = 0; i < child_count; ++i) all.include(child[std::size_t(i)].box);
+  return all;
+}
+
 }  // namespace testbench

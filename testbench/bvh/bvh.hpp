@@ -48,6 +48,8 @@ struct BvhChild {
 struct BvhNode {
   int child_count = 0;
   std::array<BvhChild, kMaxBvhWidth> child;
+
+  Box box() const;  ///< around all that is below
 };
 
 /// A tree of boxes over a scene's triangles. Nodes stand before their children; nodes[0] is the root. Of no

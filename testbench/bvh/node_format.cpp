@@ -102,11 +102,9 @@ ChildReference reference_to(const BvhChild& child, const std::vector<std::int32_
 void encode_node(const BvhNode& node, const NodeLayout& layout, const std::vector<std::int32_t>& slot_of_node,
                  std::uint8_t* to) {
   std::memset(to, 0, std::size_t(layout.node_bytes()));
-  Box all;
-  for (int i = 0; i < node.child_count; ++i) all.include(node.child[std::size_t(i)].box);
   QuantisedFrame frame{};
   if (layout.format == NodeFormat::quantised8) {
-    frame = frame_around(all);
+    frame = frame_around(node.box());
     store(to, 0, frame);
   }
   for (int i = 0; i < layout.width; ++i) {

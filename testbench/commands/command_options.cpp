@@ -151,7 +151,6 @@ void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program
 }
 
 void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& program) {
-  using path_tracer::NodeFormat;
   command
       .add_option("--traversal", chosen_,
                   "How rays find triangles, by default what the scene and the chip make fastest: " +
@@ -160,8 +159,7 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
   path_tracer::TreeShape& tree = program.tree;
   tree.resident_nodes = kAsManyAsFit;
   command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, NodeFormat>{
-          {"fp64", NodeFormat::fp64}, {"fp32", NodeFormat::fp32}, {"quantised8", NodeFormat::quantised8}}))
+      ->transform(CLI::CheckedTransformer(node_formats_by_name()))
       ->default_str(node_format_name(tree.layout.format));
   command.add_option("--leaf-triangles", tree.leaf_triangles, "Triangles of a leaf, at most")
       ->capture_default_str();

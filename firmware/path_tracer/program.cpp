@@ -84,7 +84,7 @@ int traversal_bin_blocks(const ProgramConfig& config) {
   return config.bin_blocks + 2 * config.load_buffers() + config.save_buffers();
 }
 
-int treelet_steps(const ProgramConfig& config) {
+int record_steps(const ProgramConfig& config) {
   return 2 * config.load_buffers() - 1;
 }
 
@@ -100,7 +100,7 @@ int treelet_pool_blocks(const SceneCounts& scene, int num_pes, const ProgramConf
   const std::int64_t treelets = (scene.tree_slots - tree.resident_nodes) / tree.treelet_nodes;
   const std::int64_t rays = std::int64_t(num_pes) * config.bin_blocks;
   const auto groups = static_cast<int>(std::min({treelets, rays, kMostGroups}));
-  return config.bin_blocks + 1 + treelet_steps(config) + groups;
+  return config.bin_blocks + 1 + record_steps(config) + groups;
 }
 
 void take_treelet_pool(Layout& layout, MonoAllocator& memory, int num_pes, const ProgramConfig& config) {

@@ -154,8 +154,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
 /// Blocks of the traversal bin's ring: all rays at once, and room for blocks that are being loaded or saved.
 int traversal_bin_blocks(const ProgramConfig& config);
 
-/// Steps of the treelet queues under way, from the load of a block of rays to its turn.
-int treelet_steps(const ProgramConfig& config);
+/// Steps whose rays come from mono memory that are under way, from the load of their records to their turn.
+int record_steps(const ProgramConfig& config);
 
 /// A count by pass, in at most kMaxIntervals intervals of as many passes each; the last one may be shorter.
 /// Two intervals become one when there are too many.

@@ -23,8 +23,7 @@ void RayQueue::enqueue(TransferRing& saves, std::uint64_t step, PolyPointer<Queu
   arguments.first_place = place(rays_);
   arguments.place = {ray.span().offset_bytes + PolyPointer<QueuedRay>::size_bytes()};
   machine_.run(kernels_.traversal().enqueue, arguments, with_ray);
-  constexpr int kNoBlock = -1;  // of the slots
-  saves.copy_p2m(step, kNoBlock, machine_.places_in(arguments.place), ray.span(), with_ray);
+  saves.copy_p2m(step, TransferRing::kNoBlock, machine_.places_in(arguments.place), ray.span(), with_ray);
   rays_ += count;
   last_writer_ = step;
 }

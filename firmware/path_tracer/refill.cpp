@@ -42,8 +42,8 @@ void RefillStage::load_rays(std::uint64_t step, Group& group) {
   arguments.place = to.ray_place;
   arguments.takes = &group.fresh;
   context_.machine.run(kernels_.take_rays, arguments, idle_pes);
-  context_.loads.copy_m2p(step, kNoBlock, to.ray.span(), context_.machine.places_in(to.ray_place),
-                          group.fresh);
+  context_.loads.copy_m2p(step, TransferRing::kNoBlock, to.ray.span(),
+                          context_.machine.places_in(to.ray_place), group.fresh);
   queue.take(count);
 }
 

@@ -15,42 +15,28 @@ int bits_of(int numbers) {
   return bits;
 }
 
-/// From the load, which is begun two steps of n ahead since a ray's leaf is known only when the ray is there,
-/// to the end of the save.
-int record_buffers(const ProgramConfig& config) {
-  return treelet_steps(config) + config.save_buffers() - 1;
-}
-
 }  // namespace
 
 SharedTreeletContext::SharedTreeletContext(cn::Machine& machine, const ProgramConfig& config,
                                            const Layout& layout)
-    : records(machine, "traversal record",
-              {record_buffers(config), config.tree.record_bytes() + int{sizeof(MonoAddress)}, false}),
+    : records(machine, config),
       queues(layout, config, machine.num_pes()),
       number{machine.poly_memory().allocate("numbers of rays that go on", sizeof(std::int32_t)).offset_bytes},
       slot_bits(bits_of(layout.tree_slots)) {}
 
-PolyField<MonoAddress> SharedTreeletStage::record_to(std::uint64_t step) const {
-  return {rays_.records.buffer(step).offset_bytes + rays_.queues.record_bytes()};
-}
-
-void SharedTreeletStage::traverse_and_sort(std::uint64_t step, const LaneMask& rays, const Needs& needs,
-                                           std::size_t pass) {
-  count_pass(pass, rays);
-  alive_ = traverse(step, record(step), rays, needs);
-  const int going_on = context_.machine.count(alive_);
-  if (going_on > 0) sort(step, going_on);
+void SharedTreeletStage::put_back(std::uint64_t step, const LaneMask& rays, const LaneMask& alive,
+                                  std::size_t /*pass*/) {
+  const int going_on = context_.machine.count(alive);
+  if (going_on > 0) sort(step, alive, going_on);
   rays_.queues.forget(rays.count() - going_on);
-  finish(step, record(step), rays.without(alive_));
 }
 
 /// Treelet by treelet, what is left at last into the mixed queue.
-void SharedTreeletStage::sort(std::uint64_t step, int rays) {
+void SharedTreeletStage::sort(std::uint64_t step, const LaneMask& alive, int rays) {
   Needs needs;
-  locate(step, record(step), alive_, needs);
+  locate(step, records_.record(step), alive, needs);
   LaneMask left = needs.treelet;
-  LaneMask mixed = alive_.without(left);
+  LaneMask mixed = alive.without(left);
   int unsorted = context_.machine.count(left);
   int in_mixed = rays - unsorted;
   while (unsorted > 0) {
@@ -92,51 +78,26 @@ void SharedTreeletStage::append(std::uint64_t step, std::int32_t treelet, const 
   arguments.room = where.room;
   arguments.address = where.address;
   arguments.next_address = where.next_address;
-  arguments.record_bytes = rays_.queues.record_bytes();
-  arguments.place = record_to(step);
+  arguments.record_bytes = records_.record_bytes();
+  arguments.place = records_.record_to(step);
   context_.machine.run(kernels_.append_to_blocks, arguments, lanes);
 }
 
-void SharedTreeletStage::save(std::uint64_t step, int /*block*/) {
-  rays_.records.copy_p2m(step, kNoBlock, context_.machine.places_in(record_to(step)),
-                         {rays_.records.buffer(step).offset_bytes, rays_.queues.record_bytes()}, alive_);
-  if (!context_.config.buffers_saves()) rays_.records.wait(step);
-  save_hits(step);
-}
-
-void BeginGroupsStage::load(std::uint64_t step, int block) {
-  load_packed_rays(step, block);
-}
-
-void BeginGroupsStage::process(std::uint64_t step, int block) {
-  const LaneMask rays = packed_rays(block);
-  rays_.records.wait(step);
-  enter(step, record(step), rays);
-  traverse_and_sort(step, rays, Needs{}, 0);
-}
-
 GroupStage::GroupStage(const StageContext& context, TreeContext& tree, SharedTreeletContext& rays)
-    : SharedTreeletStage(context, tree, rays), states_(std::size_t(record_buffers(context.config))) {}
+    : SharedTreeletStage(context, tree, rays), states_(std::size_t(RecordRing::buffers(context.config))) {}
 
 void GroupStage::load(std::uint64_t step, int block) {
   const TreeletQueues::Block& group = rays_.queues.block(block);
   state(step).rays = LaneMask::first(group.rays);
   state(step).treelet = group.treelet;
-  TransferRing& records = rays_.records;
-  records.wait(step);
-  records.wait_until(group.last_writer);
-  const int bytes = rays_.queues.record_bytes();
-  records.copy_m2p(step, kNoBlock, {records.buffer(step).offset_bytes, bytes},
-                   cn::MonoPlaces::array(rays_.queues.address_of(block), std::uint64_t(bytes)),
-                   state(step).rays);
-  if (!context_.config.buffers_loads()) records.wait(step);
+  records_.load(step, rays_.queues.address_of(block), group.last_writer, state(step).rays);
 }
 
 void GroupStage::prepare(std::uint64_t step, int block) {
-  rays_.records.wait(step);
+  records_.wait(step);
   rays_.queues.release(block);
   State& prepared = state(step);
-  locate(step, record(step), prepared.rays, prepared.needs);
+  locate(step, records_.record(step), prepared.rays, prepared.needs);
   load_leaves(step, prepared.needs);
   if (prepared.treelet == TreeletQueues::kMixed) load_treelets(step, prepared.needs);
 }
@@ -144,7 +105,7 @@ void GroupStage::prepare(std::uint64_t step, int block) {
 void GroupStage::process(std::uint64_t step, int /*block*/) {
   const State& prepared = state(step);
   if (prepared.treelet != TreeletQueues::kMixed) broadcast(step, prepared);
-  traverse_and_sort(step, prepared.rays, prepared.needs, 1);
+  traverse_and_put_back(step, prepared.rays, prepared.needs, 1);
 }
 
 void GroupStage::broadcast(std::uint64_t step, const State& state) {
@@ -162,7 +123,7 @@ SharedTreeletTraversal::SharedTreeletTraversal(const StageContext& context, Tree
     : TreeTraversal(context, tree),
       machine_(context.machine),
       queue_(*context.queue),
-      most_planned_(treelet_steps(context.config)),
+      most_planned_(record_steps(context.config)),
       rays_(context.machine, context.config, context.layout),
       begin_(context, tree, rays_),
       group_(context, tree, rays_) {}

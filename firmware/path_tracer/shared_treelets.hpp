@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/path_tracer/tree_stage.hpp"
+#include "firmware/path_tracer/record_stage.hpp"
 #include "firmware/path_tracer/treelet_queues.hpp"
 
 /// Rays grouped by the treelet that they need next (queues at treelets: Pharr, Kolb, Gershbein, Hanrahan,
@@ -20,46 +20,28 @@ namespace path_tracer {
 struct SharedTreeletContext {
   SharedTreeletContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout);
 
-  TransferRing records;  ///< a buffer stays a step's from its load to the end of its save
+  RecordRing records;
   TreeletQueues queues;
   PolyField<std::int32_t> number;
   int slot_bits;  ///< of a node's slot
 };
 
-/// What both stages do at their ends: rays that go on are saved to the queues.
-class SharedTreeletStage : public TreeStage {
+/// Puts rays back into the queues.
+class SharedTreeletStage : public RecordStage {
  public:
   SharedTreeletStage(const StageContext& context, TreeContext& tree, SharedTreeletContext& rays)
-      : TreeStage(context, tree), rays_(rays) {}
-  void save(std::uint64_t step, int block) override;
+      : RecordStage(context, tree, rays.records), rays_(rays) {}
 
  protected:
-  PolyPointer<TraversalRecord> record(std::uint64_t step) const {
-    return PolyPointer<TraversalRecord>(rays_.records.buffer(step));
-  }
-  void traverse_and_sort(std::uint64_t step, const LaneMask& rays, const Needs& needs, std::size_t pass);
+  void put_back(std::uint64_t step, const LaneMask& rays, const LaneMask& alive, std::size_t pass) override;
 
   SharedTreeletContext& rays_;
 
  private:
-  PolyField<MonoAddress> record_to(std::uint64_t step) const;
-  void sort(std::uint64_t step, int rays);
+  void sort(std::uint64_t step, const LaneMask& alive, int rays);
   std::int32_t least_treelet(std::uint64_t step, const LaneMask& rays);
   LaneMask rays_of_treelet(std::uint64_t step, std::int32_t treelet, const LaneMask& rays);
   void append(std::uint64_t step, std::int32_t treelet, const LaneMask& lanes, int rays);
-
-  LaneMask alive_;
-};
-
-/// Ray bin: takes rays as far as the resident nodes go, into the queues. Its blocks are the ray bin's,
-/// packed.
-class BeginGroupsStage : public SharedTreeletStage {
- public:
-  using SharedTreeletStage::SharedTreeletStage;
-
-  const char* bin() const override { return "ray bin"; }
-  void load(std::uint64_t step, int block) override;
-  void process(std::uint64_t step, int block) override;
 };
 
 /// Queues: loads rays, then their leaves, takes them through their treelet. Its blocks are the pool's.
@@ -103,7 +85,7 @@ class SharedTreeletTraversal : public TreeTraversal {
   RayQueue& queue_;
   int most_planned_;  ///< steps, before blocks that are partly full are taken
   SharedTreeletContext rays_;
-  BeginGroupsStage begin_;
+  BeginStage<SharedTreeletStage> begin_;
   GroupStage group_;
   int steps_left_ = 0;  ///< that are planned
 };

@@ -2,84 +2,44 @@
 
 namespace path_tracer {
 
-/// From the load, which is begun two steps of n ahead since a ray's leaf is known only when the ray is there,
-/// to the end of the save.
-int TemporaryBinContext::record_buffers(const ProgramConfig& config) {
-  return 2 * config.load_buffers() - 1 + config.save_buffers() - 1;
-}
-
 TemporaryBinContext::TemporaryBinContext(cn::Machine& machine, const ProgramConfig& config,
                                          const Layout& layout)
-    : records(machine, "traversal record",
-              {record_buffers(config), config.tree.record_bytes() + int{sizeof(MonoAddress)}, false}),
+    : records(machine, config),
       bin(layout, config, machine.num_pes()),
       number{
           machine.poly_memory().allocate("numbers of rays that go on", sizeof(std::int32_t)).offset_bytes} {}
 
-PolyField<MonoAddress> TemporaryBinStage::record_to(std::uint64_t step) const {
-  return {rays_.records.buffer(step).offset_bytes + rays_.bin.record_bytes()};
-}
-
-void TemporaryBinStage::traverse_and_sort(std::uint64_t step, const LaneMask& rays, const Needs& needs,
-                                          std::size_t pass) {
-  count_pass(pass, rays);
-  alive_ = traverse(step, record(step), rays, needs);
-  const int going_on = context_.machine.number_ascending(alive_, rays_.number);
+void TemporaryBinStage::put_back(std::uint64_t step, const LaneMask& /*rays*/, const LaneMask& alive,
+                                 std::size_t pass) {
+  const int going_on = context_.machine.number_ascending(alive, rays_.number);
   if (going_on > 0) {
     AppendRaysArguments arguments;
     arguments.number = rays_.number;
     arguments.bin = rays_.bin.address();
-    arguments.record_bytes = rays_.bin.record_bytes();
+    arguments.record_bytes = records_.record_bytes();
     arguments.tail = rays_.bin.tail();
     arguments.capacity = rays_.bin.capacity();
-    arguments.place = record_to(step);
-    context_.machine.run(kernels_.append_rays, arguments, alive_);
+    arguments.place = records_.record_to(step);
+    context_.machine.run(kernels_.append_rays, arguments, alive);
   }
   rays_.bin.append(going_on, step, pass);
-  finish(step, record(step), rays.without(alive_));
-}
-
-void TemporaryBinStage::save(std::uint64_t step, int /*block*/) {
-  rays_.records.copy_p2m(step, kNoBlock, context_.machine.places_in(record_to(step)),
-                         {rays_.records.buffer(step).offset_bytes, rays_.bin.record_bytes()}, alive_);
-  if (!context_.config.buffers_saves()) rays_.records.wait(step);
-  save_hits(step);
-}
-
-void BeginStage::load(std::uint64_t step, int block) {
-  load_packed_rays(step, block);
-}
-
-void BeginStage::process(std::uint64_t step, int block) {
-  const LaneMask rays = packed_rays(block);
-  rays_.records.wait(step);
-  enter(step, record(step), rays);
-  traverse_and_sort(step, rays, Needs{}, 0);
 }
 
 TraverseStage::TraverseStage(const StageContext& context, TreeContext& tree, TemporaryBinContext& rays)
-    : TemporaryBinStage(context, tree, rays),
-      states_(std::size_t(TemporaryBinContext::record_buffers(context.config))) {}
+    : TemporaryBinStage(context, tree, rays), states_(std::size_t(RecordRing::buffers(context.config))) {}
 
 void TraverseStage::load(std::uint64_t step, int block) {
   state(step).rays = LaneMask::first(rays_.bin.rays(block));
-  TransferRing& records = rays_.records;
-  records.wait(step);
-  records.wait_until(rays_.bin.last_writer(block));
-  const int bytes = rays_.bin.record_bytes();
-  records.copy_m2p(step, kNoBlock, {records.buffer(step).offset_bytes, bytes},
-                   cn::MonoPlaces::array(rays_.bin.address_of(block), std::uint64_t(bytes)),
-                   state(step).rays);
-  if (!context_.config.buffers_loads()) records.wait(step);
+  records_.load(step, rays_.bin.address_of(block), rays_.bin.last_writer(block), state(step).rays);
 }
 
 void TraverseStage::prepare(std::uint64_t step, int /*block*/) {
-  rays_.records.wait(step);
-  load_tree(step, record(step), state(step).rays, state(step).needs);
+  records_.wait(step);
+  load_tree(step, records_.record(step), state(step).rays, state(step).needs);
 }
 
 void TraverseStage::process(std::uint64_t step, int block) {
-  traverse_and_sort(step, state(step).rays, state(step).needs, rays_.bin.pass(block));
+  traverse_and_put_back(step, state(step).rays, state(step).needs, rays_.bin.pass(block));
 }
 
 TemporaryBinTraversal::TemporaryBinTraversal(const StageContext& context, TreeContext& tree)

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "firmware/path_tracer/record_stage.hpp"
 #include "firmware/path_tracer/traversal_bin.hpp"
-#include "firmware/path_tracer/tree_stage.hpp"
 
 /// The circular buffer within the intersection step that the paper's section 5 sketches: rays wait in a
 /// temporary bin, each with the leaf that it is to be tested against and the piece of the tree that it needs
@@ -12,42 +12,21 @@ namespace path_tracer {
 struct TemporaryBinContext {
   TemporaryBinContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout);
 
-  TransferRing records;  ///< a buffer stays a step's from its load to the end of its save
+  RecordRing records;
   TraversalBin bin;
   PolyField<std::int32_t> number;
-
-  static int record_buffers(const ProgramConfig& config);
 };
 
-/// What both stages do at their ends: rays that go on are saved to the bin.
-class TemporaryBinStage : public TreeStage {
+/// Puts rays back into the bin.
+class TemporaryBinStage : public RecordStage {
  public:
   TemporaryBinStage(const StageContext& context, TreeContext& tree, TemporaryBinContext& rays)
-      : TreeStage(context, tree), rays_(rays) {}
-  void save(std::uint64_t step, int block) override;
+      : RecordStage(context, tree, rays.records), rays_(rays) {}
 
  protected:
-  PolyPointer<TraversalRecord> record(std::uint64_t step) const {
-    return PolyPointer<TraversalRecord>(rays_.records.buffer(step));
-  }
-  PolyField<MonoAddress> record_to(std::uint64_t step) const;
-  void traverse_and_sort(std::uint64_t step, const LaneMask& rays, const Needs& needs, std::size_t pass);
+  void put_back(std::uint64_t step, const LaneMask& rays, const LaneMask& alive, std::size_t pass) override;
 
   TemporaryBinContext& rays_;
-
- private:
-  LaneMask alive_;
-};
-
-/// Ray bin: takes rays as far as the resident nodes go, into the traversal bin. Its blocks are the ray bin's,
-/// packed.
-class BeginStage : public TemporaryBinStage {
- public:
-  using TemporaryBinStage::TemporaryBinStage;
-
-  const char* bin() const override { return "ray bin"; }
-  void load(std::uint64_t step, int block) override;
-  void process(std::uint64_t step, int block) override;
 };
 
 /// Traversal bin: loads rays, then what they need, tests leaves, goes on through the tree. Its blocks are the
@@ -89,7 +68,7 @@ class TemporaryBinTraversal : public TreeTraversal {
   RayQueue& queue_;
   int num_pes_;
   TemporaryBinContext rays_;
-  BeginStage begin_;
+  BeginStage<TemporaryBinStage> begin_;
   TraverseStage traverse_;
   int steps_left_ = 0;  ///< that are planned
 };

@@ -26,6 +26,8 @@ class TransferRing {
 
   cn::PolySpan buffer(std::uint64_t step) const { return entry(step).span; }
 
+  /// For transfers that are of no block of the slots'.
+  static constexpr int kNoBlock = -1;
   void copy_m2p(std::uint64_t step, int block, cn::PolySpan destination, const cn::MonoPlaces& source,
                 const cn::LaneMask& enabled);
   void copy_p2m(std::uint64_t step, int block, const cn::MonoPlaces& destination, cn::PolySpan source,
@@ -45,7 +47,7 @@ class TransferRing {
     cn::PolySpan span;
     cn::Semaphore done;
     std::uint64_t step = 0;
-    int block = -1;
+    int block = kNoBlock;
     int pending = 0;  ///< transfers started and not waited for
   };
 

@@ -48,7 +48,7 @@ void TreeStage::load_packed_rays(std::uint64_t step, int block) {
   RayQueue& queue = *context_.queue;
   context_.saves.wait_until(queue.last_writer());
   const LaneMask rays = packed_rays(block);
-  context_.loads.copy_m2p(step, kNoBlock, loads(step).ray.span(),
+  context_.loads.copy_m2p(step, TransferRing::kNoBlock, loads(step).ray.span(),
                           cn::MonoPlaces::array(queue.next_place(), sizeof(QueuedRay)), rays);
   queue.take(rays.count());
 }
@@ -75,13 +75,14 @@ void TreeStage::load_leaves(std::uint64_t step, Needs& needs) {
   needs.leaves = context_.machine.count(needs.leaf);
   const cn::PolySpan leaf{to.leaf.span().offset_bytes,
                           tree_.tree.shape.leaf_records() * int{sizeof(TriangleRecord)}};
-  context_.loads.copy_m2p(step, kNoBlock, leaf, context_.machine.places_in(to.leaf_place), needs.leaf);
+  context_.loads.copy_m2p(step, TransferRing::kNoBlock, leaf, context_.machine.places_in(to.leaf_place),
+                          needs.leaf);
   context_.counts.traversal.leaf_loads += std::uint64_t(needs.leaves);
 }
 
 void TreeStage::load_treelets(std::uint64_t step, const Needs& needs) {
   const Loads to = loads(step);
-  context_.loads.copy_m2p(step, kNoBlock, {to.treelet_offset, tree_.tree.shape.treelet_bytes()},
+  context_.loads.copy_m2p(step, TransferRing::kNoBlock, {to.treelet_offset, tree_.tree.shape.treelet_bytes()},
                           context_.machine.places_in(to.treelet_place), needs.treelet);
   context_.counts.traversal.treelet_loads += std::uint64_t(needs.treelet.count());
 }
@@ -141,9 +142,9 @@ void TreeStage::finish(std::uint64_t step, PolyPointer<TraversalRecord> record, 
 void TreeStage::save_hits(std::uint64_t step) {
   if (!finished_.any()) return;
   const Hits from = hits(step);
-  context_.saves.copy_p2m(step, kNoBlock, context_.machine.places_in(from.hit_to), from.hit.span(),
-                          finished_);
-  context_.saves.copy_p2m(step, kNoBlock, context_.machine.places_in(from.surface_place_to),
+  context_.saves.copy_p2m(step, TransferRing::kNoBlock, context_.machine.places_in(from.hit_to),
+                          from.hit.span(), finished_);
+  context_.saves.copy_p2m(step, TransferRing::kNoBlock, context_.machine.places_in(from.surface_place_to),
                           {from.surface_place.offset_bytes, sizeof(MonoAddress)}, finished_);
   tree_.last_hit_step = step;
 }

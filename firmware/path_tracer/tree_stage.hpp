@@ -29,8 +29,6 @@ class TreeStage : public Stage {
   bool works_on_slots() const override { return false; }
 
  protected:
-  static constexpr int kNoBlock = -1;  ///< of the slots
-
   struct Loads {
     PolyField<MonoAddress> leaf_place;
     PolyField<MonoAddress> treelet_place;

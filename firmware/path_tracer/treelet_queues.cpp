@@ -8,7 +8,7 @@ TreeletQueues::TreeletQueues(const Layout& layout, const ProgramConfig& config, 
     : first_(layout.treelet_pool.address),
       record_bytes_(config.tree.record_bytes()),
       num_pes_(num_pes),
-      most_taken_(treelet_steps(config)),
+      most_taken_(record_steps(config)),
       blocks_(std::size_t(layout.treelet_pool_blocks)) {
   for (int i = layout.treelet_pool_blocks; i > 0; --i) free_.push_back(i - 1);
 }

@@ -68,6 +68,19 @@ double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
                   double(chip.control.cache_line_bytes) / chip.clear_connect.bytes_per_cycle);
 }
 
+/// Of a PE's SRAM, beside everything else; below 0 if that does not fit. Where resident nodes are as many as
+/// fit, one is counted.
+int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) {
+  ProgramConfig least = program;
+  if (least.tree.resident_nodes == kAsManyAsFit) least.tree.resident_nodes = 1;
+  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
+  constexpr int kPlenty = 1 << 18;
+  NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
+  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least,
+                                      layout, {});
+  return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
+}
+
 std::string in_words(double cycles) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.0f", cycles);
@@ -106,17 +119,29 @@ TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeS
               " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
 }
 
+path_tracer::TreeShape tree_that_fits(const ProgramConfig& program, const model::ChipConfig& chip,
+                                      const TreeWishes& wishes) {
+  // Segments a second by the temporary bin, 100,000 triangles: 159 k with treelets of 2 nodes and 2 entries,
+  // 152 k with 1 node and 8 entries, 138 k with 2 nodes and 1 entry.
+  constexpr int kFewEntries = 2;
+  ProgramConfig fitting = program;
+  path_tracer::TreeShape& tree = fitting.tree;
+  for (;; tree.treelet_nodes /= 2) {
+    const bool is_least_treelet = tree.treelet_nodes <= 1 || wishes.treelet_nodes.has_value();
+    const int least_entries = is_least_treelet ? 0 : kFewEntries;
+    for (tree.stack_entries = program.tree.stack_entries;; tree.stack_entries /= 2) {
+      if (bytes_left(fitting, chip) >= 0) return tree;
+      if (tree.stack_entries <= least_entries || wishes.stack_entries.has_value()) break;
+    }
+    if (is_least_treelet) return program.tree;
+  }
+}
+
 int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program,
                             const model::ChipConfig& chip) {
   ProgramConfig least = program;
   least.tree.resident_nodes = 1;
-  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
-  constexpr int kPlenty = 1 << 18;
-  NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
-  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least,
-                                      layout, {});
-  const int used = machine.poly_memory().used_bytes();
-  const int left = chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - used;
+  const int left = bytes_left(least, chip);
   const auto nodes_of_tree =
       static_cast<int>(std::min<std::size_t>(triangles, path_tracer::kMaxTreeletNodes));
   return std::clamp(1 + left / program.tree.layout.node_bytes(), 1, std::max(1, nodes_of_tree));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "firmware/path_tracer/program.hpp"
@@ -29,6 +30,18 @@ TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::Tree
 /// Whichever costs less.
 TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
                                  const model::ChipConfig& chip);
+
+/// What the user asked for, which is left alone.
+struct TreeWishes {
+  std::optional<int> treelet_nodes;
+  std::optional<int> stack_entries;
+};
+
+/// The program's tree, which follows the wishes. Where it does not fit a PE's SRAM beside everything else, a
+/// shorter stack and then smaller treelets, as far as neither was wished for; as it was when that does not
+/// help. Of resident nodes, if they are as many as fit, one counts.
+path_tracer::TreeShape tree_that_fits(const path_tracer::ProgramConfig& program,
+                                      const model::ChipConfig& chip, const TreeWishes& wishes);
 
 /// As many nodes as the SRAM has room for beside everything else, at least one and no more than a tree of so
 /// many triangles has.

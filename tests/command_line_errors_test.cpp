@@ -70,6 +70,12 @@ TEST_F(CommandLineErrors, Usage) {
   expect_render_error({"--buffer", "all"}, {"--buffer", "all", "loads", "saves", "both", "none"});
   expect_render_error({"--level", "v9"}, {"--level", "v9", "v2"});
   expect_render_error({"--seed", "-1"}, {"--seed", "-1"});
+  expect_render_error({"--node-format", "fp16"}, {"--node-format", "'fp16'", "fp64", "fp32", "quantised8"});
+  expect_render_error({"--traversal", "magic"},
+                      {"--traversal", "'magic'", "brute_force", "temporary_bin", "refill", "packets"});
+  expect_render_error({"--traversal", "1"}, {"--traversal", "'1'", "refill"});
+  expect_render_error({"--sampler", "halton"}, {"--sampler", "'halton'", "philox", "sobol"});
+  expect_render_error({"--light-sampling", "none"}, {"--light-sampling", "'none'", "area", "solid_angle"});
   expect_error({"reproduce", kCornellBox, "--samples", "0"}, {"--samples"});
 }
 

@@ -78,6 +78,59 @@ TEST(ResidentNodes, AreAsManyAsFit) {
     }
 }
 
+/// As `program` wants it, as it fits.
+ProgramConfig fitted(ProgramConfig program, const testbench::TreeWishes& wishes = {}) {
+  program.tree.treelet_nodes = wishes.treelet_nodes.value_or(program.tree.treelet_nodes);
+  program.tree.stack_entries = wishes.stack_entries.value_or(program.tree.stack_entries);
+  program.tree = testbench::tree_that_fits(program, kChip, wishes);
+  return program;
+}
+
+TEST(TreeThatFits, IsTheOneWantedIfThatFits) {
+  for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill, Traversal::packets}) {
+    ProgramConfig program;
+    program.traversal = traversal;
+    const ProgramConfig same = fitted(program);
+    EXPECT_EQ(same.tree.stack_entries, program.tree.stack_entries);
+    EXPECT_EQ(same.tree.treelet_nodes, program.tree.treelet_nodes);
+  }
+}
+
+TEST(TreeThatFits, HasAShorterStackThenSmallerTreelets) {
+  ProgramConfig program;
+  program.traversal = Traversal::temporary_bin;
+  program.tree.resident_nodes = 1;
+  program.n = 2;
+  const ProgramConfig shorter = fitted(program, {4, {}});  // treelets of four as they are
+  EXPECT_EQ(shorter.tree.treelet_nodes, 4);
+  EXPECT_LT(shorter.tree.stack_entries, program.tree.stack_entries);
+  EXPECT_TRUE(fits(shorter));
+  ProgramConfig longer = shorter;
+  longer.tree.stack_entries *= 2;
+  EXPECT_FALSE(fits(longer)) << longer.tree.stack_entries;
+
+  program.n = 3;  // ten records of a ray
+  ASSERT_FALSE(fits(program));
+  const ProgramConfig smaller = fitted(program);
+  EXPECT_TRUE(fits(smaller));
+  EXPECT_EQ(smaller.tree.treelet_nodes, 1);
+  EXPECT_GE(smaller.tree.stack_entries, 1);
+}
+
+TEST(TreeThatFits, LeavesWishesAlone) {
+  ProgramConfig program;
+  program.traversal = Traversal::temporary_bin;
+  program.n = 3;
+  const ProgramConfig wished = fitted(program, {2, 4});
+  EXPECT_EQ(wished.tree.treelet_nodes, 2);
+  EXPECT_EQ(wished.tree.stack_entries, 4);
+  EXPECT_EQ(fitted(program, {{}, 1}).tree.stack_entries, 1);
+  program.n = 1;
+  program.tree.resident_nodes = 64;  // of which no tree fits
+  EXPECT_EQ(fitted(program).tree.stack_entries, program.tree.stack_entries);
+  EXPECT_EQ(fitted(program).tree.treelet_nodes, program.tree.treelet_nodes);
+}
+
 TEST(ResidentNodes, AreNoMoreThanATreeHas) {
   ProgramConfig program;
   program.traversal = Traversal::refill;

@@ -8,12 +8,12 @@
 
 #include "model/chip_file.hpp"
 #include "model/chip_parameters.hpp"
+#include "testbench/commands/named_values.hpp"
 #include "testbench/error.hpp"
 #include "testbench/film_size.hpp"
 #include "testbench/program_names.hpp"
 #include "testbench/render.hpp"
 #include "testbench/scene/scene_file.hpp"
-#include "testbench/traversal_choice.hpp"
 
 namespace testbench {
 namespace {
@@ -128,14 +128,13 @@ void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program
   using path_tracer::Sampler;
   command
       .add_option("--sampler", program.sampler, "Random numbers: philox (independent) or sobol (stratified)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Sampler>{{"philox", Sampler::philox}, {"sobol", Sampler::sobol}}))
+      ->transform(named_values<Sampler>({{"philox", Sampler::philox}, {"sobol", Sampler::sobol}}))
       ->default_str(sampler_name(program.sampler));
   command
       .add_option("--light-sampling", program.light_sampling,
                   "Points of a light: uniform in its area, or in the solid_angle it takes")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, LightSampling>{
-          {"area", LightSampling::area}, {"solid_angle", LightSampling::solid_angle}}))
+      ->transform(named_values<LightSampling>(
+          {{"area", LightSampling::area}, {"solid_angle", LightSampling::solid_angle}}))
       ->default_str(light_sampling_name(program.light_sampling));
   command
       .add_option("--roulette-start", program.roulette_start,
@@ -155,22 +154,22 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
       .add_option("--traversal", chosen_,
                   "How rays find triangles, by default what the scene and the chip make fastest: " +
                       CLI::detail::join(traversal_names(), ", "))
-      ->transform(CLI::CheckedTransformer(traversals_by_name()));
+      ->transform(named_values(traversals_by_name()));
   path_tracer::TreeShape& tree = program.tree;
   tree.resident_nodes = kAsManyAsFit;
   command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")
-      ->transform(CLI::CheckedTransformer(node_formats_by_name()))
+      ->transform(named_values(node_formats_by_name()))
       ->default_str(node_format_name(tree.layout.format));
   command.add_option("--leaf-triangles", tree.leaf_triangles, "Triangles of a leaf, at most")
       ->capture_default_str();
-  command.add_option("--treelet-nodes", tree.treelet_nodes, "Nodes that a PE loads at a time")
-      ->capture_default_str();
+  command.add_option("--treelet-nodes", wishes_.treelet_nodes, "Nodes that a PE loads at a time")
+      ->default_str(std::to_string(tree.treelet_nodes) + ", fewer if they do not fit");
   command.add_option("--resident-nodes", tree.resident_nodes, "Nodes around the root that every PE keeps")
       ->default_str("as many as fit");
   command
-      .add_option("--stack-entries", tree.stack_entries,
+      .add_option("--stack-entries", wishes_.stack_entries,
                   "Entries of a ray's short stack: 0 or a power of two")
-      ->capture_default_str();
+      ->default_str(std::to_string(tree.stack_entries) + ", fewer if they do not fit");
   command
       .add_option("--visits", tree.visits,
                   "Nodes that a ray visits before PEs load again, at most; 0: all that are in SRAM")
@@ -179,8 +178,11 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
 
 std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig& chip,
                                     path_tracer::ProgramConfig& program) const {
+  program.tree.treelet_nodes = wishes_.treelet_nodes.value_or(program.tree.treelet_nodes);
+  program.tree.stack_entries = wishes_.stack_entries.value_or(program.tree.stack_entries);
   const TraversalChoice choice = choose_traversal(scene.triangles.size(), program.tree, chip);
   program.traversal = chosen_.value_or(choice.traversal);
+  if (program.uses_tree()) program.tree = tree_that_fits(program, chip, wishes_);
   complete_traversal(scene.triangles.size(), chip, program);
   return chosen_ ? "" : choice.reason;
 }

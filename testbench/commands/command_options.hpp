@@ -11,6 +11,7 @@
 #include "model/timing_style.hpp"
 #include "testbench/sampling_choice.hpp"
 #include "testbench/scene/scene.hpp"
+#include "testbench/traversal_choice.hpp"
 
 namespace testbench {
 
@@ -92,6 +93,7 @@ class TraversalOption {
 
  private:
   std::optional<path_tracer::Traversal> chosen_;
+  TreeWishes wishes_;
 };
 
 }  // namespace testbench

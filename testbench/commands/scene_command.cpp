@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/named_values.hpp"
 #include "testbench/scene/generated_scene.hpp"
 #include "testbench/scene/save_scene.hpp"
 
@@ -28,9 +29,7 @@ void add_scene_command(CLI::App& app) {
   const auto state = std::make_shared<SceneCommand>();
   std::map<std::string, GeneratedScene> kinds;
   for (const GeneratedScene kind : kGeneratedScenes) kinds[name_of(kind)] = kind;
-  command.add_option("kind", state->kind, "What it shows")
-      ->required()
-      ->transform(CLI::CheckedTransformer(kinds));
+  command.add_option("kind", state->kind, "What it shows")->required()->transform(named_values(kinds));
   command.add_option("--triangles", state->triangles, "About how many")
       ->check(CLI::Range(kLeastGeneratedTriangles, kMostGeneratedTriangles))
       ->capture_default_str();

@@ -148,10 +148,10 @@ void HazardChecker::release_if_over(cn::Semaphore semaphore) {
 std::optional<cn::PolySpan> HazardChecker::poly_addresses(const cn::MonoPlaces& places) const {
   const cn::PolyMemory& memory = machine_.poly_memory();
   if (places.by_pe == nullptr) return std::nullopt;
-  const std::uint64_t* const first = memory.row(0);
-  const std::uint64_t* const end = memory.row(memory.capacity_bytes());
+  const std::uint64_t* const first = memory.strip(0);
+  const std::uint64_t* const end = memory.strip(0, memory.capacity_bytes());
   if (std::less<>()(places.by_pe, first) || !std::less<>()(places.by_pe, end)) return std::nullopt;
-  return cn::PolySpan{8 * static_cast<int>((places.by_pe - first) / memory.num_pes()), 8};
+  return cn::PolySpan{8 * static_cast<int>((places.by_pe - first) / cn::kStripLanes), 8};
 }
 
 void HazardChecker::check_poly(const Request& request) {

@@ -1,6 +1,7 @@
 #include "model/mono_pieces.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
 namespace model {
@@ -52,7 +53,12 @@ void MonoPieces::describe(const cn::Transfer& transfer, int num_pes, const Rules
   first_ = transfer.mono.first;
   stride_bytes_ = transfer.mono.stride_bytes;
   by_pe_.clear();
-  if (transfer.mono.by_pe != nullptr) by_pe_.assign(transfer.mono.by_pe, transfer.mono.by_pe + num_pes);
+  if (transfer.mono.by_pe != nullptr) {
+    by_pe_.resize(std::size_t(num_pes));
+    for (int first_pe = 0; first_pe < num_pes; first_pe += cn::kStripLanes)
+      std::memcpy(&by_pe_[std::size_t(first_pe)], transfer.mono.strip(first_pe),
+                  cn::kStripLanes * sizeof(cn::MonoAddress));
+  }
   enabled_ = transfer.enabled;
   bytes_per_pe_ = transfer.poly.size_bytes;
   pes_ = pieces_ = misaligned_ = 0;

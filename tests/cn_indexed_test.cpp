@@ -6,6 +6,7 @@
 
 #include "firmware/cn/control.hpp"
 #include "tests/support/number_samples.hpp"
+#include "tests/support/poly_words.hpp"
 #include "tests/support/strip_fixture.hpp"
 
 namespace {
@@ -26,8 +27,8 @@ class CnIndexed : public test_support::StripFixture {
   static constexpr int kBytes = 1024;
 
   CnIndexed() : StripFixture(kPes) {
-    for (int row = 0; row < kBytes; row += 8)
-      for (int pe = 0; pe < kPes; ++pe) memory.row(row)[pe] = random_();
+    for (int offset_bytes = 0; offset_bytes < kBytes; offset_bytes += 8)
+      for (int pe = 0; pe < kPes; ++pe) memory.word(pe, offset_bytes) = random_();
   }
 
   LaneMask some_pes() {
@@ -46,7 +47,7 @@ class CnIndexed : public test_support::StripFixture {
   /// As each PE sees its own SRAM.
   template <class T>
   T at(int pe, std::int32_t address) const {
-    const std::uint64_t word = memory.row(address / 8 * 8)[pe];
+    const std::uint64_t word = memory.word(pe, address / 8 * 8);
     T value;
     std::memcpy(&value, reinterpret_cast<const char*>(&word) + address % 8, sizeof(T));
     return value;
@@ -66,9 +67,7 @@ class CnIndexed : public test_support::StripFixture {
     }
   }
 
-  std::vector<std::uint64_t> all_words() const {
-    return {memory.words(), memory.words() + kPes * kBytes / 8};
-  }
+  std::vector<std::uint64_t> all_words() const { return test_support::poly_words(memory, kBytes); }
 
   std::mt19937_64 random_{17};
 };

@@ -27,7 +27,7 @@ TEST(KeepLeast, FindsTheLeastOfTheEnabledPes) {
     std::int32_t expected = 1 << 30;
     for (int pe = 0; pe < kPes; ++pe) {
       const auto number = std::int32_t(random() % 65536);
-      memory.row(value.offset_bytes)[pe] = std::uint64_t(unsigned(number));
+      memory.word(pe, value.offset_bytes) = std::uint64_t(unsigned(number));
       if (random() % 3 != 0) continue;
       enabled.set(pe, true);
       expected = std::min(expected, number);

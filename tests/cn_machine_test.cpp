@@ -5,6 +5,7 @@
 #include <random>
 
 #include "testbench/native_machine.hpp"
+#include "tests/support/poly_words.hpp"
 #include "tests/support/strip_fixture.hpp"
 
 namespace {
@@ -46,8 +47,7 @@ class CnMachine : public testing::Test {
   }
 
   std::vector<std::uint64_t> poly_words() {
-    const std::uint64_t* const words = machine.poly_memory().words();
-    return {words, words + kPolyBytes / 8 * kPes};
+    return test_support::poly_words(machine.poly_memory(), kPolyBytes);
   }
   std::vector<std::uint8_t> mono_bytes() { return {machine.mono(), machine.mono() + kMonoBytes}; }
 
@@ -123,10 +123,10 @@ TEST_F(CnMachine, EachPeSuppliesItsOwnAddress) {
   const PolyField<MonoAddress> addresses{240 - 8};
   for (int round = 0; round < 40; ++round) {
     const Direction direction = round % 2 ? Direction::mono_to_poly : Direction::poly_to_mono;
-    std::uint64_t* const row = machine.poly_memory().row(addresses.offset_bytes);
     std::vector<MonoAddress> table;
     for (int pe = 0; pe < kPes; ++pe)  // no two PEs write to one place
-      table.push_back(row[pe] = (std::uint64_t((pe * 7 + round) % kPes) * 64 + random() % 3 * 8));
+      table.push_back(machine.poly_memory().word(pe, addresses.offset_bytes) =
+                          (std::uint64_t((pe * 7 + round) % kPes) * 64 + random() % 3 * 8));
     const std::uint64_t offset = random() % 2 * 2048;
     expect_moves(direction, {8 * static_cast<int>(random() % 20), 40}, machine.places_in(addresses, offset),
                  random_pes(), [&](int pe) { return table[std::size_t(pe)] + offset; });
@@ -137,7 +137,7 @@ TEST_F(CnMachine, AGatherMayReplaceItsOwnAddresses) {
   const PolyField<MonoAddress> addresses{64};
   std::vector<MonoAddress> table;
   for (int pe = 0; pe < kPes; ++pe)
-    table.push_back(machine.poly_memory().row(64)[pe] = std::uint64_t(kPes - pe) * 8);
+    table.push_back(machine.poly_memory().word(pe, 64) = std::uint64_t(kPes - pe) * 8);
   expect_moves(Direction::mono_to_poly, {64, 8}, machine.places_in(addresses), all,
                [&](int pe) { return table[std::size_t(pe)]; });
 }
@@ -170,8 +170,8 @@ TEST_F(CnMachine, EveryAddressAndSizeIsInWholeWords) {
         machine.async_copy_p2m(done, MonoPlaces::array(8, 12), {16, 16}, all);
       },
       "transfer of poly offset 16: stride is 12, must be a multiple of 8");
-  for (int pe = 0; pe < kPes; ++pe) machine.poly_memory().row(0)[pe] = std::uint64_t(8 * pe);
-  machine.poly_memory().row(0)[17] = 33;
+  for (int pe = 0; pe < kPes; ++pe) machine.poly_memory().word(pe, 0) = std::uint64_t(8 * pe);
+  machine.poly_memory().word(17, 0) = 33;
   expect_fault(
       [&] {
         machine.async_copy_m2p(done, {16, 16}, machine.places_in({0}, 8), all);
@@ -308,7 +308,7 @@ std::vector<std::int32_t> walk_numbers(CountingMachine& machine, const LaneMask&
   }
   std::vector<std::int32_t> numbers;
   for (int pe = 0; pe < machine.num_pes(); ++pe)
-    numbers.push_back(static_cast<std::int32_t>(machine.poly_memory().row(0)[pe]) - 1);
+    numbers.push_back(static_cast<std::int32_t>(machine.poly_memory().word(pe, 0)) - 1);
   return numbers;
 }
 
@@ -324,15 +324,14 @@ TEST(NumberAscending, EqualsAWalkAlongThePath) {
 
       for (const int offset : {16, 20}) {
         CountingMachine machine(width);
-        std::uint64_t* const row = machine.poly_memory().row(16);
-        for (int pe = 0; pe < width; ++pe) row[pe] = 0x5555555544444444u;
+        for (int pe = 0; pe < width; ++pe) machine.poly_memory().word(pe, 16) = 0x5555555544444444u;
         EXPECT_EQ(machine.number_ascending(chosen, {offset}), chosen.count());
         EXPECT_EQ(machine.last_kernel, "number_ascending");
         for (int pe = 0; pe < width; ++pe) {
           const auto number = std::uint64_t(std::uint32_t(expected[std::size_t(pe)]));
           const std::uint64_t low = offset == 16 && chosen[pe] ? number : 0x44444444u;
           const std::uint64_t high = offset == 20 && chosen[pe] ? number : 0x55555555u;
-          ASSERT_EQ(row[pe], high << 32 | low) << "PE " << pe;
+          ASSERT_EQ(machine.poly_memory().word(pe, 16), high << 32 | low) << "PE " << pe;
         }
         EXPECT_EQ(machine.issued[InstructionClass::swazzle], walked.issued[InstructionClass::swazzle]);
         EXPECT_EQ(machine.issued[InstructionClass::enable], walked.issued[InstructionClass::enable]);

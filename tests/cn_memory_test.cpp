@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cstring>
 #include <random>
+#include <set>
 
 #include "firmware/cn/kernel.hpp"
 #include "tests/support/number_samples.hpp"
+#include "tests/support/poly_words.hpp"
 #include "tests/support/strip_fixture.hpp"
 
 namespace {
@@ -77,12 +79,27 @@ TEST(PolyMemoryTest, OverflowNamesTheBufferAndShowsTheMap) {
   EXPECT_EQ(memory.allocate("hits", 48).offset_bytes, 64);
 }
 
-TEST(PolyMemoryTest, RowsHoldOneWordOfEachPe) {
-  PolyMemory memory(16, 64);
-  EXPECT_EQ(memory.row(0), memory.words());
-  EXPECT_EQ(memory.row(24), memory.words() + 3 * 16);
+TEST(PolyMemoryTest, StripsLieOneBehindTheOther) {
+  PolyMemory memory(24, 64);
+  EXPECT_EQ(memory.strip(0), memory.words());
+  EXPECT_EQ(memory.strip(0, 24), memory.words() + 3 * 8);
+  EXPECT_EQ(memory.strip_words(), 8u * 8u);
+  EXPECT_EQ(memory.strip(16, 8), memory.words() + 2 * 64 + 8);
   const PolyMemory& constant = memory;
-  EXPECT_EQ(constant.row(8), constant.words() + 16);
+  EXPECT_EQ(constant.strip(8), constant.words() + 64);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory.words()) % 64, 0u);
+}
+
+TEST(PolyMemoryTest, EachPeHasWordsOfItsOwn) {
+  PolyMemory memory(24, 64);
+  std::set<const std::uint64_t*> places;
+  for (int pe = 0; pe < 24; ++pe)
+    for (int offset_bytes = 0; offset_bytes < 64; offset_bytes += 8) {
+      EXPECT_EQ(&memory.word(pe, offset_bytes), memory.strip(pe / 8 * 8, offset_bytes) + pe % 8);
+      places.insert(&memory.word(pe, offset_bytes));
+    }
+  EXPECT_EQ(places.size(), 24u * 8u);
+  EXPECT_EQ(*places.rbegin() - *places.begin(), 24 * 8 - 1);
 }
 
 TEST(LaneMaskTest, HoldsOneBitAPe) {
@@ -126,7 +143,7 @@ class PolyFieldTest : public test_support::StripFixture {
   PolyFieldTest() {
     std::mt19937_64 random(4);
     for (int w = 0; w < 1024 / 8 * num_pes(); ++w) memory.words()[w] = random();
-    before_.assign(memory.words(), memory.words() + 1024 / 8 * num_pes());
+    before_ = test_support::poly_words(memory, 1024);
   }
 
   /// The bytes of `T` at `offset` in a PE's SRAM.
@@ -161,9 +178,9 @@ class PolyFieldTest : public test_support::StripFixture {
         std::memcpy(reinterpret_cast<char*>(&expected[std::size_t(offset / 8 * num_pes() + pe)]) + offset % 8,
                     &values[std::size_t(pe)], sizeof(T));
     }
-    const std::vector<std::uint64_t> after(memory.words(), memory.words() + before_.size());
-    EXPECT_EQ(after, expected) << "a write left its field";
-    std::copy(before_.begin(), before_.end(), memory.words());
+    EXPECT_EQ(test_support::poly_words(memory, 1024), expected) << "a write left its field";
+    for (int pe = 0; pe < num_pes(); ++pe)
+      memory.word(pe, offset / 8 * 8) = before_[std::size_t(offset / 8 * num_pes() + pe)];
   }
 
   std::vector<std::uint64_t> before_;
@@ -221,7 +238,7 @@ TEST_F(PolyPointerTest, GetsAndSetsByMember) {
   // One PE's record reads as the plain struct does in mono memory.
   for (int pe = 0; pe < num_pes(); ++pe) {
     std::uint64_t words[6];
-    for (int w = 0; w < 6; ++w) words[w] = memory.row(88 + 8 * w)[pe];
+    for (int w = 0; w < 6; ++w) words[w] = memory.word(pe, 88 + 8 * w);
     if (!enabled[pe]) {
       for (int w = 0; w < 6; ++w) EXPECT_EQ(words[w], before_[std::size_t((11 + w) * num_pes() + pe)]);
       continue;

@@ -137,7 +137,7 @@ class CnPolyArray : public test_support::StripFixture {
       for (int pe = 0; pe < num_pes(); ++pe) word(e, pe) = value(e, pe);
   }
 
-  std::uint64_t& word(int element, int pe) { return memory.row(span.offset_bytes + 8 * element)[pe]; }
+  std::uint64_t& word(int element, int pe) { return memory.word(pe, span.offset_bytes + 8 * element); }
   static std::uint64_t value(int element, int pe) { return std::uint64_t(1000 * element + pe); }
 
   cn::PolySpan span;

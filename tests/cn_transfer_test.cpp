@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "firmware/cn/transfer.hpp"
+#include "tests/support/poly_words.hpp"
 
 namespace {
 
 using cn::Direction;
 using cn::MonoAddress;
 using cn::MonoPlaces;
+using test_support::poly_words;
 
 constexpr int kPes = 24;
 constexpr int kPolyBytes = 512;
@@ -23,12 +25,12 @@ constexpr MonoAddress kNowhere = ~MonoAddress{7};  // of a disabled PE
 class CnTransfer : public testing::Test {
  protected:
   CnTransfer() : poly(kPes, kPolyBytes), mono(kMonoBytes) {
-    for (int i = 0; i < poly_words(); ++i) poly.words()[i] = random();
+    for (int i = 0; i < kPolyBytes / 8 * kPes; ++i) poly.words()[i] = random();
     for (std::uint8_t& byte : mono) byte = static_cast<std::uint8_t>(random());
   }
 
   void expect_move(Direction direction, int words, const MonoPlaces& places, const cn::LaneMask& enabled) {
-    std::vector<std::uint64_t> expected_poly(poly.words(), poly.words() + poly_words());
+    std::vector<std::uint64_t> expected_poly = poly_words(poly, kPolyBytes);
     std::vector<std::uint8_t> expected_mono = mono;
     for (int pe = 0; pe < kPes; ++pe) {
       if (!enabled[pe]) continue;
@@ -40,7 +42,7 @@ class CnTransfer : public testing::Test {
       }
     }
     cn::move_data({direction, {kOffsetBytes, words * 8}, places, enabled, {}}, poly, mono.data());
-    ASSERT_EQ(std::vector<std::uint64_t>(poly.words(), poly.words() + poly_words()), expected_poly) << words;
+    ASSERT_EQ(poly_words(poly, kPolyBytes), expected_poly) << words;
     ASSERT_EQ(mono, expected_mono) << words;
   }
 
@@ -51,7 +53,6 @@ class CnTransfer : public testing::Test {
       pes.set_strip_bits(strip, random() % 4 == 0 ? 0xff : random() & random() & 0xff);
     return pes;
   }
-  int poly_words() const { return kPolyBytes / 8 * kPes; }
 
   std::mt19937_64 random{3};
   cn::PolyMemory poly;

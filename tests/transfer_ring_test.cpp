@@ -64,7 +64,7 @@ TEST_F(TransferRingTest, WaitsForAllTransfersOfTheBufferAndNoOther) {
 TEST_F(TransferRingTest, DataHaveArrivedAfterTheWait) {
   for (int i = 0; i < 4096; ++i) machine.mono()[i] = static_cast<std::uint8_t>(i / 64);
   load(7, 0);
-  const auto word = [&] { return machine.poly_memory().row(ring.buffer(7).offset_bytes)[3]; };
+  const auto word = [&] { return machine.poly_memory().word(3, ring.buffer(7).offset_bytes); };
   EXPECT_NE(word(), 0x0707070707070707u);
   ring.wait(7);
   EXPECT_EQ(word(), 0x0707070707070707u);
@@ -130,7 +130,7 @@ TEST_F(TransferRingTest, PipelineKeepsAsManyStepsUnderWayAsThereAreBuffers) {
     for (; loads_issued < std::min(kSteps, step + kBuffers); ++loads_issued) load(loads_issued, 0);
     most_under_way = std::max(most_under_way, machine.under_way());
     ring.wait(step);
-    EXPECT_EQ(machine.poly_memory().row(ring.buffer(step).offset_bytes)[5], step * 0x0101010101010101u);
+    EXPECT_EQ(machine.poly_memory().word(5, ring.buffer(step).offset_bytes), step * 0x0101010101010101u);
   }
   EXPECT_EQ(most_under_way, std::size_t(kBuffers));
   EXPECT_EQ(machine.under_way(), 0u);
@@ -148,7 +148,7 @@ class SynchronousRing : public TransferRingTest {
     synchronous.copy_p2m(kStep, 2, MonoPlaces::array(64 * kStep, 16), synchronous.buffer(kStep),
                          LaneMask::first(8));
   }
-  std::uint64_t& word() { return machine.poly_memory().row(synchronous.buffer(kStep).offset_bytes)[3]; }
+  std::uint64_t& word() { return machine.poly_memory().word(3, synchronous.buffer(kStep).offset_bytes); }
 
   TransferRing synchronous{machine, "direct", {1, 16, true}};
 };

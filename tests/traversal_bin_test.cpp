@@ -154,7 +154,7 @@ class RayQueueTest : public testing::Test {
     queue.emplace(*machine, kernels, layout);
     light_place = {machine->poly_memory().allocate("light places", sizeof(cn::MonoAddress)).offset_bytes};
     for (int pe = 0; pe < kPes; ++pe)
-      machine->poly_memory().row(light_place.offset_bytes)[pe] =
+      machine->poly_memory().word(pe, light_place.offset_bytes) =
           (layout.lights + std::uint64_t(pe % 3)).address;
   }
 
@@ -164,7 +164,7 @@ class RayQueueTest : public testing::Test {
     saves->wait(step);
     for (int pe = 0; pe < kPes; ++pe) {
       const double x = 100.0 * double(step) + pe;
-      std::memcpy(machine->poly_memory().row(ray.span().offset_bytes) + pe, &x, sizeof(x));
+      std::memcpy(&machine->poly_memory().word(pe, ray.span().offset_bytes), &x, sizeof(x));
     }
     queue->enqueue(*saves, step, ray, light_place, first_slot, with_ray);
   }

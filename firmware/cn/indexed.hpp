@@ -14,16 +14,13 @@ inline Lanes<std::uint64_t> lane_numbers() {
   return each_lane<std::uint64_t>([](int i) { return std::uint64_t(i); });
 }
 
-/// Where the words of the enabled PEs lie in Strip::poly_words; 0 for the others, whose addresses may be
-/// anything.
+/// Where the words of the enabled PEs lie in Strip::words; 0 for the others, whose addresses may be anything.
 inline Lanes<std::uint64_t> word_index(const poly<std::int32_t>& address) {
   const auto bytes = bit_cast_lanes<std::uint64_t>(address.lanes());
-  const auto rows = each_chunk<std::uint64_t>([&](int i) { return bytes.chunk[i] >> 3; });
-  const auto in_rows = multiply_low_words(rows, broadcast(std::uint64_t(unsigned(strip.num_pes))));
   const auto lane = lane_numbers();
-  const std::uint64_t first = unsigned(strip.first_pe);
+  static_assert(kStripLanes == 8, "lanes a word and bytes a word cancel");
   const auto index =
-      each_chunk<std::uint64_t>([&](int i) { return in_rows.chunk[i] + lane.chunk[i] + first; });
+      each_chunk<std::uint64_t>([&](int i) { return (bytes.chunk[i] & ~std::uint64_t{7}) + lane.chunk[i]; });
   return select_lanes(MaskLanes(strip.enabled), index, broadcast(std::uint64_t{0}));
 }
 
@@ -38,7 +35,7 @@ struct LanePointers {
   const std::uint64_t* lane[kStripLanes];
 
   explicit LanePointers(const Lanes<std::uint64_t>& index) {
-    for (int i = 0; i < kStripLanes; ++i) lane[i] = strip.poly_words + index[i];
+    for (int i = 0; i < kStripLanes; ++i) lane[i] = strip.words + index[i];
   }
   Lanes<std::uint64_t> gather(std::size_t offset) const {
     constexpr std::size_t kInChunk = Lanes<std::uint64_t>::kChunkBytes / sizeof(std::uint64_t);
@@ -93,7 +90,7 @@ inline void store_at(const poly<std::int32_t>& address, const poly<std::uint64_t
   const Lanes<std::uint64_t> index = indexed_detail::word_index(address);
   for (std::uint32_t lanes = mask_bits(strip.enabled); lanes != 0; lanes &= lanes - 1) {
     const int lane = __builtin_ctz(lanes);
-    strip.poly_words[index[lane]] = value.lanes()[lane];
+    strip.words[index[lane]] = value.lanes()[lane];
   }
 }
 
@@ -111,7 +108,7 @@ class IndexedRecord {
     issue(InstructionClass::sram, 2);
     observe(offset_bytes, 8);
     return poly<T>(bit_cast_lanes<typename poly<T>::Lane>(
-        pointers_.gather(std::size_t(unsigned(offset_bytes) / 8) * unsigned(strip.num_pes))));
+        pointers_.gather(std::size_t(unsigned(offset_bytes) / 8) * kStripLanes)));
   }
 
   /// Of two variables that were loaded the one that each PE's condition chooses: on the chip the condition

@@ -25,14 +25,15 @@ template <class Arguments, void (*program)(const Arguments&)>
 [[gnu::flatten]] void run_strips(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled,
                                  IssueTree& issued) {
   issued.clear();
-  strip.poly_words = memory.words();
+  strip.to_next_strip = memory.strip_words();
   strip.num_pes = memory.num_pes();
   strip.observer = memory.observer();
   if (!kObservedSram && memory.observer() != nullptr) memory.observer()->kernel_is_silent();
   for (int first_pe = 0; first_pe < memory.num_pes(); first_pe += kStripLanes) {
-    const std::uint8_t bits = enabled.strip_bits(first_pe / kStripLanes);
+    const std::uint8_t bits = enabled.strip_bits(int(unsigned(first_pe) / kStripLanes));
     if (bits == 0) continue;
     strip.first_pe = first_pe;
+    strip.words = memory.strip(first_pe);
     strip.enabled = mask_from_bits(bits);
     strip.tree = &issued;
     enter_node(issued.root());

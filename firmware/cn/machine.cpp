@@ -80,15 +80,15 @@ void Machine::observe_poly(Access access, PolySpan bytes, const LaneMask& enable
 
 /// Returns how many there are. Without a branch on who is chosen: nobody could predict it.
 int Machine::write_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
-  std::uint64_t* const row = poly_memory_.row(number.offset_bytes / 8 * 8);
   const int shift = number.offset_bytes % 8 * 8;
   const std::uint64_t place = std::uint64_t{0xffffffffu} << shift;
   std::uint64_t next = 0;
   for (int first_pe = 0; first_pe < num_pes(); first_pe += kStripLanes) {
     const unsigned bits = chosen.strip_bits(first_pe / kStripLanes);
+    std::uint64_t* const words = poly_memory_.strip(first_pe, number.offset_bytes / 8 * 8);
     for (int lane = 0; lane < kStripLanes; ++lane) {
       const std::uint64_t is_chosen = (bits >> lane) & 1u;
-      std::uint64_t& word = row[first_pe + lane];
+      std::uint64_t& word = words[lane];
       const std::uint64_t replaced = place & -is_chosen;
       word = (word & ~replaced) | ((next << shift) & replaced);
       next += is_chosen;
@@ -140,12 +140,11 @@ void Machine::observe_swazzle(const char* name, PolyField<std::uint64_t> value, 
 void Machine::swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour) {
   const char* const name = from_neighbour < 0 ? "swazzle_up" : "swazzle_down";
   if (access_observer() != nullptr) observe_swazzle(name, value, from_neighbour);
-  std::uint64_t* const row = poly_memory_.row(value.offset_bytes);
-  const std::size_t moved_bytes = std::size_t(num_pes() - 1) * sizeof(std::uint64_t);
+  const auto word = [&](int pe) -> std::uint64_t& { return poly_memory_.word(pe, value.offset_bytes); };
   if (from_neighbour < 0) {
-    std::memmove(row + 1, row, moved_bytes);
+    for (int pe = num_pes() - 1; pe > 0; --pe) word(pe) = word(pe - 1);
   } else {
-    std::memmove(row, row + 1, moved_bytes);
+    for (int pe = 0; pe < num_pes() - 1; ++pe) word(pe) = word(pe + 1);
   }
   issued_.clear();
   IssueTree::Node& node = issued_.root();

@@ -60,7 +60,8 @@ class Machine {
 
   /// The addresses that PEs hold in a poly variable, plus a mono offset, for a gather or scatter.
   MonoPlaces places_in(PolyField<MonoAddress> addresses, std::uint64_t offset_bytes = 0) {
-    return MonoPlaces::each(poly_memory_.row(addresses.offset_bytes), offset_bytes);
+    return MonoPlaces::each(poly_memory_.strip(0, addresses.offset_bytes), offset_bytes,
+                            poly_memory_.strip_words());
   }
 
   /// A semaphore of its own for each caller; `name` appears in waves and fault messages.

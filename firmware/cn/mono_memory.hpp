@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+
+#include "firmware/cn/lanes.hpp"
 
 namespace cn {
 
@@ -20,17 +23,23 @@ struct MonoPointer {
 struct MonoPlaces {
   MonoAddress first = 0;
   std::uint64_t stride_bytes = 0;
-  const MonoAddress* by_pe = nullptr;  ///< when set, PE p's address relative to `first`; no stride then
+  const MonoAddress* by_pe =
+      nullptr;  ///< when set, addresses relative to `first`, a strip's side by side; no stride then
+  std::size_t to_next_strip = kStripLanes;  ///< addresses, from one strip's to the next's
 
-  static MonoPlaces array(MonoAddress first, std::uint64_t stride_bytes) {
-    return {first, stride_bytes, nullptr};
+  static MonoPlaces array(MonoAddress first, std::uint64_t stride_bytes) { return {first, stride_bytes}; }
+  static MonoPlaces each(const MonoAddress* by_pe, std::uint64_t offset_bytes = 0,
+                         std::size_t to_next_strip = kStripLanes) {
+    return {offset_bytes, 0, by_pe, to_next_strip};
   }
-  static MonoPlaces each(const MonoAddress* by_pe, std::uint64_t offset_bytes = 0) {
-    return {offset_bytes, 0, by_pe};
+
+  /// With `by_pe`: the addresses of the strip that PE `first_pe` begins.
+  const MonoAddress* strip(int first_pe) const {
+    return by_pe + std::size_t(first_pe / kStripLanes) * to_next_strip;
   }
 
   MonoAddress operator[](int pe) const {
-    return first + (by_pe != nullptr ? by_pe[pe] : std::uint64_t(pe) * stride_bytes);
+    return first + (by_pe != nullptr ? strip(pe)[pe % kStripLanes] : std::uint64_t(pe) * stride_bytes);
   }
 };
 

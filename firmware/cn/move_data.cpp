@@ -18,16 +18,15 @@ namespace {
 struct StripTransfer {
   std::uint8_t* place[kStripLanes];  ///< valid for every lane, enabled or not
   std::uint64_t* row;
-  std::size_t row_pitch;
   int words;
   unsigned enabled;
 };
 
 constexpr unsigned kAllLanes = (1u << kStripLanes) - 1;
 
-// Mono memory holds a PE's words side by side, poly memory a word of all PEs, so a transfer transposes: in
-// registers, kBlockWords words of each PE at a time. The last block's `count` is a template argument because
-// most records are shorter than two blocks.
+// Mono memory holds a PE's words side by side, poly memory a word of a strip's PEs, so a transfer transposes:
+// in registers, kBlockWords words of each PE at a time. The last block's `count` is a template argument
+// because most records are shorter than two blocks.
 #if defined(__AVX512F__)
 
 constexpr int kBlockWords = 8;
@@ -75,13 +74,11 @@ template <int count>
   transpose(block);
   if (strip.enabled == kAllLanes) {
 #pragma GCC unroll 8
-    for (int i = 0; i < count; ++i)
-      _mm512_storeu_si512(row + std::size_t(i) * strip.row_pitch, __m512i(block[i]));
+    for (int i = 0; i < count; ++i) _mm512_storeu_si512(row + i * kStripLanes, __m512i(block[i]));
   } else {
     const auto lanes = static_cast<__mmask8>(strip.enabled);
 #pragma GCC unroll 8
-    for (int i = 0; i < count; ++i)
-      _mm512_mask_storeu_epi64(row + std::size_t(i) * strip.row_pitch, lanes, __m512i(block[i]));
+    for (int i = 0; i < count; ++i) _mm512_mask_storeu_epi64(row + i * kStripLanes, lanes, __m512i(block[i]));
   }
 }
 
@@ -99,8 +96,7 @@ template <int count>
                                               const std::uint64_t* row) {
   Block block{};
 #pragma GCC unroll 8
-  for (int i = 0; i < count; ++i)
-    block[i] = Words(_mm512_loadu_si512(row + std::size_t(i) * strip.row_pitch));
+  for (int i = 0; i < count; ++i) block[i] = Words(_mm512_loadu_si512(row + i * kStripLanes));
   transpose(block);
   if (strip.enabled == kAllLanes) {
 #pragma GCC unroll 8
@@ -159,7 +155,7 @@ template <int count>
     transpose(block);
 #pragma GCC unroll 4
     for (int i = 0; i < count; ++i) {
-      Words* const to = as_vector(row + std::size_t(i) * strip.row_pitch);
+      Words* const to = as_vector(row + i * kStripLanes);
       _mm256_storeu_si256(
           to, enabled == 0xfu ? block[i]
                               : _mm256_blendv_epi8(_mm256_loadu_si256(to), block[i], lanes_of_bits(enabled)));
@@ -189,7 +185,7 @@ template <int count>
     Block block{};
 #pragma GCC unroll 4
     for (int i = 0; i < count; ++i)
-      block[i] = _mm256_loadu_si256(reinterpret_cast<const Words*>(row + std::size_t(i) * strip.row_pitch));
+      block[i] = _mm256_loadu_si256(reinterpret_cast<const Words*>(row + i * kStripLanes));
     transpose(block);
 #pragma GCC unroll 4
     for (int lane = 0; lane < 4; ++lane)
@@ -217,7 +213,7 @@ void save_block(const StripTransfer& strip, int word, const std::uint64_t* row) 
 
 template <Direction direction, int count>
 [[gnu::always_inline]] inline void move_block(const StripTransfer& strip, int first_word) {
-  std::uint64_t* const row = strip.row + std::size_t(first_word) * strip.row_pitch;
+  std::uint64_t* const row = strip.row + std::size_t(first_word) * kStripLanes;
   if constexpr (direction == Direction::mono_to_poly) {
     load_block<count>(strip, first_word, row);
   } else {
@@ -243,8 +239,8 @@ void save_in_pe_order(const StripTransfer& strip) {
   for (int lane = 0; lane < kStripLanes; ++lane)
     if ((strip.enabled >> lane) & 1u)
       for (int w = 0; w < strip.words; ++w)
-        std::memcpy(strip.place[lane] + 8 * w,
-                    &strip.row[std::size_t(w) * strip.row_pitch + std::size_t(lane)], 8);
+        std::memcpy(strip.place[lane] + 8 * w, &strip.row[std::size_t(w) * kStripLanes + std::size_t(lane)],
+                    8);
 }
 
 /// Disabled PEs may hold any address; an enabled one's takes its place.
@@ -256,7 +252,7 @@ void save_in_pe_order(const StripTransfer& strip) {
       strip.place[lane] = first + std::uint64_t(lane) * mono.stride_bytes;
     return;
   }
-  const MonoAddress* const address = mono.by_pe + first_pe;
+  const MonoAddress* const address = mono.strip(first_pe);
   const MonoAddress valid = address[__builtin_ctz(strip.enabled)];
   for (int lane = 0; lane < kStripLanes; ++lane)
     strip.place[lane] = memory + mono.first + ((strip.enabled >> lane) & 1u ? address[lane] : valid);
@@ -267,7 +263,7 @@ void save_in_pe_order(const StripTransfer& strip) {
 [[gnu::always_inline]] inline void prefetch_strip(const Transfer& transfer, int first_pe,
                                                   const std::uint8_t* mono) {
   constexpr int kLineBytes = 64;
-  const MonoAddress* const address = transfer.mono.by_pe + first_pe;
+  const MonoAddress* const address = transfer.mono.strip(first_pe);
   for (unsigned lanes = transfer.enabled.strip_bits(first_pe / kStripLanes); lanes != 0; lanes &= lanes - 1) {
     const std::uint8_t* const place = mono + transfer.mono.first + address[__builtin_ctz(lanes)];
     const std::uint8_t* const end = place + transfer.poly.size_bytes;
@@ -280,12 +276,10 @@ void save_in_pe_order(const StripTransfer& strip) {
 template <Direction direction, int tail>
 void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
   StripTransfer strip;
-  strip.row_pitch = static_cast<std::size_t>(poly.num_pes());
   strip.words = transfer.poly.size_bytes / 8;
   const bool may_overlap = direction == Direction::poly_to_mono &&
                            (transfer.mono.by_pe != nullptr ||
                             transfer.mono.stride_bytes < std::uint64_t(transfer.poly.size_bytes));
-  std::uint64_t* const row = poly.row(transfer.poly.offset_bytes);
   const int num_pes = poly.num_pes();
   const int in_blocks = strip.words - tail;
   for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {
@@ -294,7 +288,7 @@ void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono)
     if (direction == Direction::mono_to_poly && transfer.mono.by_pe != nullptr &&
         first_pe + kStripLanes < num_pes)
       prefetch_strip(transfer, first_pe + kStripLanes, mono);
-    strip.row = row + first_pe;
+    strip.row = poly.strip(first_pe, transfer.poly.offset_bytes);
     find_places(transfer.mono, first_pe, mono, strip);
     if (may_overlap && !is_ascending(strip)) {
       save_in_pe_order(strip);

@@ -179,7 +179,7 @@ class PolyArray {
     issue(InstructionClass::sram, 4 * kWords);
     for (const int index : at) observe_sram(Access::write, span(index));
     for (int e = 0; e < 4; ++e) {
-      std::uint64_t* const place = row(at[std::size_t(e)]) + strip.first_pe;
+      std::uint64_t* const place = words(at[std::size_t(e)]);
       store_lanes(place, select_lanes(strip.enabled, value[e].lanes(), load_lanes<Lane>(place)));
     }
   }
@@ -191,17 +191,20 @@ class PolyArray {
   static constexpr std::uint64_t kWords = 2;
 
   PolySpan span(int index) const { return {offset_bytes_ + index * int{sizeof(T)}, int{sizeof(T)}}; }
-  std::uint64_t* row(int index) const {
-    return strip.poly_words + std::size_t(offset_bytes_ / 8 + index) * std::size_t(strip.num_pes);
+  std::uint64_t* words(int index) const {
+    return strip.words + std::size_t(unsigned(offset_bytes_ / 8 + index)) * kStripLanes;
+  }
+  std::uint64_t word_of(int index, int pe) const {
+    const std::ptrdiff_t strips = pe / kStripLanes - strip.first_pe / kStripLanes;
+    return words(index)[strips * std::ptrdiff_t(strip.to_next_strip) + pe % kStripLanes];
   }
   poly<T> element(int index, int steps) const {
-    const std::uint64_t* const words = row(index);
-    if (steps == 0) return poly<T>(load_lanes<Lane>(words + strip.first_pe));
+    if (steps == 0) return poly<T>(load_lanes<Lane>(words(index)));
     const auto travelled = each_lane<std::uint64_t>([&](int lane) {
       const int pe = strip.first_pe + lane;
       const int from = pe - steps >= 0 && pe - steps < strip.num_pes ? pe - steps : pe;
       observe_travel(index, from, lane);
-      return words[from];
+      return word_of(index, from);
     });
     return poly<T>(bit_cast_lanes<Lane>(travelled));
   }
@@ -253,19 +256,12 @@ class VectorStream {
   poly<T> element(int element, int steps) const {
     observe_sources(element, steps);
     const int first_feeder = strip.num_pes - feeders_;
-    const std::uint64_t* const own = own_.row(own_at_ + element);
-    const int last_source = strip.first_pe + kStripLanes - 1 + steps;
-    if (last_source < first_feeder) {
-      Lanes<Lane> words;  // from a row at any place: load_lanes wants a strip's first PE
-      std::memcpy(&words, own + strip.first_pe + steps, sizeof(words));
-      return poly<T>(words);
-    }
     const auto brought = each_lane<std::uint64_t>([&](int lane) -> std::uint64_t {
       const int pe = strip.first_pe + lane;
       if (pe >= first_feeder) return 0;
-      if (pe + steps < first_feeder) return own[pe + steps];
+      if (pe + steps < first_feeder) return own_.word_of(own_at_ + element, pe + steps);
       const int behind = pe + steps - first_feeder;
-      return fed_.row(fed_at_ + behind / feeders_ * 4 + element)[first_feeder + behind % feeders_];
+      return fed_.word_of(fed_at_ + behind / feeders_ * 4 + element, first_feeder + behind % feeders_);
     });
     return poly<T>(bit_cast_lanes<Lane>(brought));
   }

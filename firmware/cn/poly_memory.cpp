@@ -7,7 +7,8 @@ namespace cn {
 PolyMemory::PolyMemory(int num_pes, int bytes_per_pe)
     : num_pes_(num_pes),
       capacity_bytes_(bytes_per_pe - kReservedBytes),
-      strips_((std::size_t(bytes_per_pe / 8) * std::size_t(num_pes) + 7) / 8) {}
+      lines_a_strip_(std::size_t(bytes_per_pe / 8)),
+      lines_(lines_a_strip_ * std::size_t((num_pes + kStripLanes - 1) / kStripLanes)) {}
 
 int PolyMemory::used_bytes() const {
   return buffers_.empty() ? 0 : buffers_.back().span.offset_bytes + buffers_.back().span.size_bytes;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/cn/lanes.hpp"
+
 namespace cn {
 
 class AccessObserver;
@@ -26,9 +28,10 @@ class PolyMemoryOverflow : public std::runtime_error {
   std::string map_;
 };
 
-/// The SRAM of all PEs. Word w of PE p is kept at [w * num_pes + p], so that a kernel reads one variable of
-/// neighbouring PEs as a vector. Buffers have names and are only ever freed all at once, as static storage of
-/// a program.
+/// The SRAM of all PEs. A strip's PEs lie side by side, word after word, so that a kernel reads one variable
+/// of all of them as a vector, and a record as lines of the host's cache that follow each other, at offsets
+/// that do not depend on the number of PEs. Buffers have names and are only ever freed all at once, as static
+/// storage of a program.
 class PolyMemory {
  public:
   struct Buffer {
@@ -56,24 +59,39 @@ class PolyMemory {
   void set_observer(AccessObserver* observer) { observer_ = observer; }
   AccessObserver* observer() const { return observer_; }
 
-  std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(strips_.data()); }
-  const std::uint64_t* words() const { return reinterpret_cast<const std::uint64_t*>(strips_.data()); }
+  /// All of it, strip after strip.
+  std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(lines_.data()); }
+  const std::uint64_t* words() const { return reinterpret_cast<const std::uint64_t*>(lines_.data()); }
 
+  /// Words from one strip to the next.
+  std::size_t strip_words() const { return lines_a_strip_ * kStripLanes; }
+  /// The strip's words at an address: word w of lane i is at [w * kStripLanes + i].
   /// @param offset_bytes a multiple of 8
-  std::uint64_t* row(int offset_bytes) { return words() + std::size_t(offset_bytes / 8) * num_pes_; }
-  const std::uint64_t* row(int offset_bytes) const {
-    return words() + std::size_t(offset_bytes / 8) * num_pes_;
+  std::uint64_t* strip(int first_pe, int offset_bytes = 0) { return words() + index(first_pe, offset_bytes); }
+  const std::uint64_t* strip(int first_pe, int offset_bytes = 0) const {
+    return words() + index(first_pe, offset_bytes);
   }
 
+  /// The word of one PE at an address, a multiple of 8.
+  std::uint64_t& word(int pe, int offset_bytes) { return words()[index(pe, offset_bytes)]; }
+  const std::uint64_t& word(int pe, int offset_bytes) const { return words()[index(pe, offset_bytes)]; }
+
  private:
+  std::size_t index(int pe, int offset_bytes) const {
+    constexpr unsigned kLanes = kStripLanes;
+    return unsigned(pe) / kLanes * strip_words() + std::size_t(unsigned(offset_bytes) / 8 * kLanes) +
+           unsigned(pe) % kLanes;
+  }
+
   int num_pes_;
   int capacity_bytes_;
   std::vector<Buffer> buffers_;
   /// One word of a strip's PEs, on its own cache line: a vector that straddles two costs twice.
-  struct alignas(64) StripOfWords {
-    std::uint64_t word[8];
+  struct alignas(64) Line {
+    std::uint64_t word[kStripLanes];
   };
-  std::vector<StripOfWords> strips_;
+  std::size_t lines_a_strip_;
+  std::vector<Line> lines_;
   AccessObserver* observer_ = nullptr;
 };
 

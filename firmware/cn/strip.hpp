@@ -26,12 +26,13 @@ inline constexpr bool kObservedSram = false;
 /// number and the instruction stream are ambient there, and so they are here. Set only by run_strips
 /// (kernel.hpp).
 struct Strip {
-  StoredMask enabled{};                 ///< PEs that take part in assignments
-  StripCounts issued;                   ///< instructions since the last flush into `node`
-  IssueTree* tree = nullptr;            ///< of the kernel
-  IssueTree::Node* node = nullptr;      ///< where in the kernel's control flow the strip is
-  std::size_t next_region = 0;          ///< ordinal of the next data-dependent region in `node`
-  std::uint64_t* poly_words = nullptr;  ///< word w of PE p is at [w * num_pes + p]
+  StoredMask enabled{};             ///< PEs that take part in assignments
+  StripCounts issued;               ///< instructions since the last flush into `node`
+  IssueTree* tree = nullptr;        ///< of the kernel
+  IssueTree::Node* node = nullptr;  ///< where in the kernel's control flow the strip is
+  std::size_t next_region = 0;      ///< ordinal of the next data-dependent region in `node`
+  std::uint64_t* words = nullptr;   ///< word w of lane i is at [w * kStripLanes + i] (PolyMemory::strip)
+  std::size_t to_next_strip = 0;    ///< words
   int num_pes = 0;
   int first_pe = 0;
   AccessObserver* observer = nullptr;  ///< of the SRAM; null when nobody looks

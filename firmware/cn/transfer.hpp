@@ -31,7 +31,10 @@ struct Transfer {
 /// multiple of 2^k only if each is: checks that pass on it need not look at PEs one by one.
 inline std::uint64_t bits_of_places(const Transfer& transfer, int num_pes) {
   std::uint64_t bits = 0;
-  for (int pe = 0; pe < num_pes; ++pe) bits |= transfer.mono.first + transfer.mono.by_pe[pe];
+  for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {
+    const MonoAddress* const places = transfer.mono.strip(first_pe);
+    for (int lane = 0; lane < kStripLanes; ++lane) bits |= transfer.mono.first + places[lane];
+  }
   return bits;
 }
 

@@ -25,11 +25,11 @@ class KernelBench {
  public:
   KernelBench() : memory(kPes, 6144), triangles(kTriangles) {
     for (int w = 0; w < 6144 / 8 - 2; ++w)
-      for (int pe = 0; pe < kPes; ++pe) row(8 * w)[pe] = number();
+      for (int pe = 0; pe < kPes; ++pe) word(pe, 8 * w) = number();
     for (std::int32_t i = 0; i < kTriangles; ++i)
       triangles[std::size_t(i)] = triangle_record(point(), point(), point(), {i / 2, i, kReach});
   }
-  double* row(int offset_bytes) { return reinterpret_cast<double*>(memory.row(offset_bytes)); }
+  double& word(int pe, int offset_bytes) { return reinterpret_cast<double&>(memory.word(pe, offset_bytes)); }
 
   cn::PolyMemory memory;
   std::vector<TriangleRecord> triangles;

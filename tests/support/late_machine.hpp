@@ -97,7 +97,7 @@ class LateMachine : public cn::Machine {
         std::memset(mono_.data() + transfer.mono[pe], kGarbage, std::size_t(transfer.poly.size_bytes));
       } else {
         for (int byte = 0; byte < transfer.poly.size_bytes; byte += 8)
-          std::memset(&poly_memory().row(transfer.poly.offset_bytes + byte)[pe], kGarbage, 8);
+          std::memset(&poly_memory().word(pe, transfer.poly.offset_bytes + byte), kGarbage, 8);
       }
     }
   }

@@ -88,10 +88,11 @@ class PioBench : public SystemCFixture {
   void fill_memories(std::uint64_t mono_bytes) {
     for (std::uint64_t address = 0; address < mono_bytes; address += 8)
       mono_word(address) = 0xd000000 + address;
-    const auto words = std::size_t(poly->num_pes()) * 128;
-    for (std::size_t i = 0; i < words; ++i) poly->words()[i] = 0x5000000 + i;
+    std::uint64_t number = 0x5000000;
+    for (int offset_bytes = 0; offset_bytes < 1024; offset_bytes += 8)
+      for (int pe = 0; pe < poly->num_pes(); ++pe) poly->word(pe, offset_bytes) = number++;
   }
-  std::uint64_t poly_word(int pe, int offset) const { return poly->row(offset)[pe]; }
+  std::uint64_t poly_word(int pe, int offset) const { return poly->word(pe, offset); }
 
   static cn::Transfer read(const cn::MonoPlaces& from, int bytes, const cn::LaneMask& enabled,
                            int semaphore = 0) {

@@ -107,20 +107,21 @@ RaySearch::RaySearch(path_tracer::Level level)
 /// So that nobody gets along with what was left there.
 void RaySearch::scramble(int used_bytes) {
   constexpr std::uint64_t kNoNumber = 0x7ff4dead7fa0beef;  // neither as a double nor as a float
-  std::fill_n(memory_.words(), std::size_t(kPes) * std::size_t(used_bytes / 8), kNoNumber);
+  for (int pe = 0; pe < kPes; ++pe)
+    for (int offset_bytes = 0; offset_bytes < used_bytes; offset_bytes += 8)
+      memory_.word(pe, offset_bytes) = kNoNumber;
 }
 
 void RaySearch::write(int pe, int offset_bytes, const void* from, std::size_t bytes) {
   const auto* word = static_cast<const char*>(from);
-  for (std::uint64_t* to = memory_.row(offset_bytes) + pe; bytes > 0; bytes -= 8, word += 8, to += kPes)
-    std::memcpy(to, word, 8);
+  for (; bytes > 0; bytes -= 8, word += 8, offset_bytes += 8)
+    std::memcpy(&memory_.word(pe, offset_bytes), word, 8);
 }
 
 void RaySearch::read(int pe, int offset_bytes, void* to, std::size_t bytes) const {
   auto* word = static_cast<char*>(to);
-  for (const std::uint64_t* from = memory_.row(offset_bytes) + pe; bytes > 0;
-       bytes -= 8, word += 8, from += kPes)
-    std::memcpy(word, from, 8);
+  for (; bytes > 0; bytes -= 8, word += 8, offset_bytes += 8)
+    std::memcpy(word, &memory_.word(pe, offset_bytes), 8);
 }
 
 SearchHit RaySearch::hit_of(int pe, const Offsets& at) const {

@@ -101,7 +101,7 @@ void DmaEngine::settle(Cycles now) {
 }
 
 void DmaEngine::start_due(Cycles now) {
-  if (queue_.waiting() == 0) return;
+  if (!queue_.may_start(now)) return;
   for (auto next = queue_.next(); next && next->cycle <= now; next = queue_.next()) start(*next);
 }
 

@@ -12,15 +12,6 @@ constexpr auto kVectorLoad = std::size_t(cn::InstructionClass::sram_vector_load)
 constexpr auto kFirstVector = std::size_t(cn::InstructionClass::fp64_add_vector4);
 constexpr auto kLastVector = std::size_t(cn::InstructionClass::fp32_multiply_add_vector4);
 
-// A kernel issues far fewer instructions than 2^31, and x86-64 converts and multiplies numbers of 32 bits
-// several at a time.
-double as_double(std::uint64_t instructions) {
-  return double(static_cast<std::int32_t>(instructions));
-}
-std::uint64_t times_lanes(std::uint64_t instructions, std::uint64_t lanes) {
-  return std::uint64_t{static_cast<std::uint32_t>(instructions)} * static_cast<std::uint32_t>(lanes);
-}
-
 }  // namespace
 
 PeArray::PeArray(const sc_core::sc_module_name& name, const ChipConfig& config)
@@ -31,63 +22,94 @@ PeArray::PeArray(const sc_core::sc_module_name& name, const ChipConfig& config)
       cycles_(config.poly.cycles) {}
 
 double PeArray::poly_cycles(const cn::IssueCounts& counts) const {
-  // Four sums side by side: one would make each addition wait for the one before.
-  constexpr std::size_t kSums = 4;
-  static_assert(kMono % kSums == 0);
-  double sums[kSums] = {};
-  for (std::size_t i = 0; i < kMono; i += kSums)
-    for (std::size_t k = 0; k < kSums; ++k) sums[k] += as_double(counts.by_class[i + k]) * cycles_[i + k];
-  const double sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  const auto cycles = [&](std::size_t i) { return double(counts.by_class[i]) * cycles_[i]; };
+  double sum = 0;
+  for (std::size_t i = 0; i < kMono; ++i) sum += cycles(i);
   double vector_arithmetic = 0;
-  for (std::size_t i = kFirstVector; i <= kLastVector; ++i)
-    vector_arithmetic += as_double(counts.by_class[i]) * cycles_[i];
-  const double vector_loads = as_double(counts.by_class[kVectorLoad]) * cycles_[kVectorLoad];
-  return vector_loads_overlap_ ? sum - std::min(vector_loads, vector_arithmetic) : sum;
+  for (std::size_t i = kFirstVector; i <= kLastVector; ++i) vector_arithmetic += cycles(i);
+  return vector_loads_overlap_ ? sum - std::min(cycles(kVectorLoad), vector_arithmetic) : sum;
 }
 
-PeArray::Cost PeArray::retire(const char* kernel, const cn::IssueTree& issued,
-                              const PioWaits& waited_before) {
-  KernelStatistics& statistics = entry(kernel);
-  cn::IssueCounts counts;
+PeArray::Cost PeArray::retire(const char* name, const cn::IssueTree& issued, const PioWaits& waited_before) {
+  Kernel& of = kernel(name);
+  KernelStatistics& statistics = of.statistics;
+  std::uint64_t mono_instructions = 0;
+  std::uint64_t sram_words = 0;
+  std::uint64_t vector_load_words = 0;
   double issue_cycles = 0;
+  std::size_t place = 0;
   issued.for_each_node([&](const cn::IssueTree::Node& node) {
-    const double node_cycles = poly_cycles(node.counts);
-    counts += node.counts;
-    issue_cycles += node_cycles;
-    statistics.enabled_lane_cycles += node_cycles * double(node.enabled_lanes);
-    for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
-      statistics.executed.by_class[i] += times_lanes(node.counts.by_class[i], node.enabled_lanes);
+    Block& block = this->block(of, place++, node.counts);
+    ++block.times;
+    block.enabled_lanes += node.enabled_lanes;
+    mono_instructions += block.counts.by_class[kMono];
+    sram_words += block.counts.by_class[kSram];
+    vector_load_words += block.counts.by_class[kVectorLoad];
+    issue_cycles += block.cycles;
+    statistics.enabled_lane_cycles += block.cycles * double(node.enabled_lanes);
   });
   const double poly = issue_cycles * code_quality_factor_;
-  const double mono = double(counts.by_class[kMono]) * cycles_[kMono] * code_quality_factor_;
-  const double sram = (double(counts.by_class[kSram]) * cycles_[kSram] +
-                       double(counts.by_class[kVectorLoad]) * cycles_[kVectorLoad]) *
-                      code_quality_factor_;
+  const double mono = double(mono_instructions) * cycles_[kMono] * code_quality_factor_;
+  const double sram =
+      (double(sram_words) * cycles_[kSram] + double(vector_load_words) * cycles_[kVectorLoad]) *
+      code_quality_factor_;
   const Cost cost{static_cast<Cycles>(std::llround(std::max(poly, mono))),
                   static_cast<Cycles>(std::llround(sram))};
   ++statistics.runs;
   statistics.cycles += cost.cycles;
-  statistics.issued += counts;
   statistics.issue_cycles += issue_cycles;
   statistics.waited_before += waited_before;
   ++statistics.runs_by_enabled_pes[std::size_t(issued.root().enabled_lanes)];
   return cost;
 }
 
-KernelStatistics& PeArray::entry(const char* kernel) {
-  const auto found = std::find(names_.begin(), names_.end(), kernel);
-  if (found != names_.end()) return kernels_[std::size_t(found - names_.begin())];
-  names_.push_back(kernel);
-  kernels_.push_back({});
-  kernels_.back().name = kernel;
-  kernels_.back().runs_by_enabled_pes.resize(std::size_t(num_pes_) + 1);
+PeArray::Kernel& PeArray::kernel(const char* name) {
+  const auto found = std::find_if(kernels_.begin(), kernels_.end(),
+                                  [&](const Kernel& kernel) { return kernel.name == name; });
+  if (found != kernels_.end()) return *found;
+  kernels_.push_back({name, {}, {}, {}});
+  KernelStatistics& statistics = kernels_.back().statistics;
+  statistics.name = name;
+  statistics.runs_by_enabled_pes.resize(std::size_t(num_pes_) + 1);
   return kernels_.back();
+}
+
+/// @param place of the block among those that this run issues
+PeArray::Block& PeArray::block(Kernel& kernel, std::size_t place, const cn::IssueCounts& counts) {
+  std::vector<Block>& blocks = kernel.blocks;
+  if (place < kernel.order.size()) {
+    Block& expected = blocks[kernel.order[place]];
+    if (expected.counts == counts) return expected;
+  } else {
+    kernel.order.resize(place + 1);
+  }
+  auto found =
+      std::find_if(blocks.begin(), blocks.end(), [&](const Block& block) { return block.counts == counts; });
+  if (found == blocks.end()) {
+    blocks.push_back({counts, poly_cycles(counts)});
+    found = blocks.end() - 1;
+  }
+  kernel.order[place] = std::size_t(found - blocks.begin());
+  return *found;
+}
+
+std::vector<KernelStatistics> PeArray::kernels() const {
+  std::vector<KernelStatistics> kernels;
+  for (const Kernel& kernel : kernels_) {
+    KernelStatistics& statistics = kernels.emplace_back(kernel.statistics);
+    for (const Block& block : kernel.blocks)
+      for (std::size_t i = 0; i < cn::kInstructionClasses; ++i) {
+        statistics.issued.by_class[i] += block.counts.by_class[i] * block.times;
+        statistics.executed.by_class[i] += block.counts.by_class[i] * block.enabled_lanes;
+      }
+  }
+  return kernels;
 }
 
 KernelStatistics PeArray::total() const {
   KernelStatistics sum;
   sum.name = "total";
-  for (const KernelStatistics& kernel : kernels_) {
+  for (const KernelStatistics& kernel : kernels()) {
     sum.runs += kernel.runs;
     sum.cycles += kernel.cycles;
     sum.issued += kernel.issued;

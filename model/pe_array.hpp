@@ -63,20 +63,36 @@ class PeArray : public sc_core::sc_module {
   /// @param waited_before of the control unit since the kernel before
   Cost retire(const char* kernel, const cn::IssueTree& issued, const PioWaits& waited_before = {});
 
-  const std::vector<KernelStatistics>& kernels() const { return kernels_; }
+  /// In the order in which they first ran.
+  std::vector<KernelStatistics> kernels() const;
   KernelStatistics total() const;
   int num_pes() const { return num_pes_; }
 
  private:
-  KernelStatistics& entry(const char* kernel);
+  /// Instructions that a kernel issues one after the other, whatever the data: its cost is computed once.
+  struct Block {
+    cn::IssueCounts counts;
+    double cycles = 0;
+    std::uint64_t times = 0;
+    std::uint64_t enabled_lanes = 0;  ///< summed over the times
+  };
+  struct Kernel {
+    const char* name;             ///< a string literal: compared by address
+    KernelStatistics statistics;  ///< without the sums over blocks
+    std::vector<Block> blocks;
+    std::vector<std::size_t>
+        order;  ///< of the blocks, as the last run issued them: the next is likely to do the same
+  };
+
+  Kernel& kernel(const char* name);
+  Block& block(Kernel& kernel, std::size_t place, const cn::IssueCounts& counts);
   double poly_cycles(const cn::IssueCounts& counts) const;
 
   int num_pes_;
   double code_quality_factor_;
   bool vector_loads_overlap_;
   std::array<double, cn::kInstructionClasses> cycles_;
-  std::vector<const char*> names_;  // string literals: compared by address
-  std::vector<KernelStatistics> kernels_;
+  std::vector<Kernel> kernels_;
 };
 
 }  // namespace model

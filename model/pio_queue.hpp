@@ -39,8 +39,11 @@ class PioQueue {
   PioQueue(PioArbitration arbitration, int depth);
 
   bool full(cn::Direction direction) const;
-  int waiting() const {
-    return static_cast<int>(engine_[0].queue.size() + engine_[1].queue.size());
+  int waiting() const { return static_cast<int>(engine_[0].queue.size() + engine_[1].queue.size()); }
+  /// Whether something may start at a cycle up to `now`. Quickly: the control unit asks at every turn.
+  bool may_start(Cycles now) const {
+    return (!engine_[0].queue.empty() && engine_[0].free <= now) ||
+           (!engine_[1].queue.empty() && engine_[1].free <= now);
   }
   /// The queue of that direction must not be full.
   void push(const Entry& entry);

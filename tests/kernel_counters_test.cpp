@@ -18,7 +18,7 @@ constexpr cn::Kernel<FakeArguments> kOther{"other", &test_support::run_fake};
 
 class KernelCounters : public test_support::ControlBench {
  protected:
-  const KernelStatistics& kernel(const std::string& name) const {
+  KernelStatistics kernel(const std::string& name) const {
     for (const KernelStatistics& of : chip->pe_array.kernels())
       if (of.name == name) return of;
     throw std::runtime_error("no kernel " + name);

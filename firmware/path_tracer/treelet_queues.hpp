@@ -32,7 +32,6 @@ class TreeletQueues {
     const std::uint64_t place = std::uint64_t(index) * std::uint64_t(num_pes_) + std::uint64_t(ray);
     return first_ + place * std::uint64_t(record_bytes_);
   }
-  int record_bytes() const { return record_bytes_; }
 
   /// These rays will come, or are over.
   void expect(int rays) { outside_ += rays; }

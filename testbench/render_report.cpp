@@ -38,6 +38,7 @@ Json program_json(const RenderOptions& options) {
           {"pixel_stride", program.pixel_stride},
           {"traversal", traversal_name(program.traversal)},
           {"node_format", node_format_name(tree.layout.format)},
+          {"node_width", tree.layout.width},
           {"leaf_triangles", tree.leaf_triangles},
           {"treelet_nodes", tree.treelet_nodes},
           {"resident_nodes", tree.resident_nodes},

@@ -81,6 +81,41 @@ int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) {
   return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
 }
 
+/// Triangles from which eight children a node cost less than four. Packets never go round: four are best.
+std::optional<std::size_t> wide_from(Traversal traversal) {
+  if (traversal == Traversal::packets) return {};
+  return traversal == Traversal::temporary_bin || traversal == Traversal::shared_treelets ? 5000 : 50000;
+}
+
+path_tracer::TreeShape suited_tree(int width, const path_tracer::TreeShape& of, const TreeWishes& wishes) {
+  constexpr int kTreeletChildren = 8;
+  path_tracer::TreeShape tree = of;
+  tree.layout.width = width;
+  tree.treelet_nodes = wishes.treelet_nodes.value_or(kTreeletChildren / width);
+  tree.stack_entries = wishes.stack_entries.value_or(tree.stack_entries);
+  tree.visits = wishes.visits.value_or(width == 2 ? 6 : width == 8 ? 3 : tree.visits);
+  return tree;
+}
+
+/// With a shorter stack, then with smaller treelets.
+std::optional<path_tracer::TreeShape> shrunk_to_fit(const ProgramConfig& program,
+                                                    const model::ChipConfig& chip, const TreeWishes& wishes) {
+  // Segments a second by the temporary bin, 100,000 triangles: 159 k with treelets of 2 nodes and 2 entries,
+  // 152 k with 1 node and 8 entries, 138 k with 2 nodes and 1 entry.
+  constexpr int kFewEntries = 2;
+  ProgramConfig fitting = program;
+  path_tracer::TreeShape& tree = fitting.tree;
+  for (;; tree.treelet_nodes /= 2) {
+    const bool is_least_treelet = tree.treelet_nodes <= 1 || wishes.treelet_nodes.has_value();
+    const int least_entries = is_least_treelet ? 0 : kFewEntries;
+    for (tree.stack_entries = program.tree.stack_entries;; tree.stack_entries /= 2) {
+      if (bytes_left(fitting, chip) >= 0) return tree;
+      if (tree.stack_entries <= least_entries || wishes.stack_entries.has_value()) break;
+    }
+    if (is_least_treelet) return {};
+  }
+}
+
 std::string in_words(double cycles) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.0f", cycles);
@@ -119,22 +154,17 @@ TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeS
               " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
 }
 
-path_tracer::TreeShape tree_that_fits(const ProgramConfig& program, const model::ChipConfig& chip,
-                                      const TreeWishes& wishes) {
-  // Segments a second by the temporary bin, 100,000 triangles: 159 k with treelets of 2 nodes and 2 entries,
-  // 152 k with 1 node and 8 entries, 138 k with 2 nodes and 1 entry.
-  constexpr int kFewEntries = 2;
-  ProgramConfig fitting = program;
-  path_tracer::TreeShape& tree = fitting.tree;
-  for (;; tree.treelet_nodes /= 2) {
-    const bool is_least_treelet = tree.treelet_nodes <= 1 || wishes.treelet_nodes.has_value();
-    const int least_entries = is_least_treelet ? 0 : kFewEntries;
-    for (tree.stack_entries = program.tree.stack_entries;; tree.stack_entries /= 2) {
-      if (bytes_left(fitting, chip) >= 0) return tree;
-      if (tree.stack_entries <= least_entries || wishes.stack_entries.has_value()) break;
-    }
-    if (is_least_treelet) return program.tree;
+path_tracer::TreeShape tree_that_fits(std::size_t triangles, const ProgramConfig& program,
+                                      const model::ChipConfig& chip, const TreeWishes& wishes) {
+  const auto wide = wide_from(program.traversal);
+  const int narrow = wishes.node_width.value_or(program.tree.layout.width);
+  ProgramConfig suited = program;
+  if (!wishes.node_width && wide && triangles >= *wide) {
+    suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program.tree, wishes);
+    if (const auto fitting = shrunk_to_fit(suited, chip, wishes)) return *fitting;
   }
+  suited.tree = suited_tree(narrow, program.tree, wishes);
+  return shrunk_to_fit(suited, chip, wishes).value_or(suited.tree);
 }
 
 int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program,

@@ -33,14 +33,18 @@ TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeS
 
 /// What the user asked for, which is left alone.
 struct TreeWishes {
-  std::optional<int> treelet_nodes;
-  std::optional<int> stack_entries;
+  std::optional<int> treelet_nodes = {};
+  std::optional<int> stack_entries = {};
+  std::optional<int> node_width = {};
+  std::optional<int> visits = {};
 };
 
-/// The program's tree, which follows the wishes. Where it does not fit a PE's SRAM beside everything else, a
-/// shorter stack and then smaller treelets, as far as neither was wished for; as it was when that does not
-/// help. Of resident nodes, if they are as many as fit, one counts.
-path_tracer::TreeShape tree_that_fits(const path_tracer::ProgramConfig& program,
+/// The program's tree with what suits its way through so many triangles, as sweeps/node_width.toml measured
+/// it, but for the wishes. Wide nodes: rays of many triangles go round less often, and to go round is what
+/// costs most. Where that does not fit a PE's SRAM beside everything else, a shorter stack, then smaller
+/// treelets, then narrower nodes, as far as none was wished for; when that does not help, what was wished
+/// for. Of resident nodes, if they are as many as fit, one counts.
+path_tracer::TreeShape tree_that_fits(std::size_t triangles, const path_tracer::ProgramConfig& program,
                                       const model::ChipConfig& chip, const TreeWishes& wishes);
 
 /// As many nodes as the SRAM has room for beside everything else, at least one and no more than a tree of so

@@ -7,17 +7,17 @@
 
 #include "testbench/bvh/node_format.hpp"
 #include "testbench/native_machine.hpp"
+#include "tests/support/node_layouts.hpp"
 
 namespace {
 
-using path_tracer::NodeFormat;
 using path_tracer::NodeLayout;
 using testbench::Box;
 using testbench::BvhNode;
 using testbench::decode_box;
 using testbench::decode_reference;
 
-class MonoNodes : public testing::TestWithParam<NodeFormat> {};
+class MonoNodes : public testing::TestWithParam<NodeLayout> {};
 
 BvhNode random_node(std::mt19937_64& random, int children) {
   std::uniform_real_distribution<double> number(-1.0, 1.0);
@@ -36,24 +36,25 @@ BvhNode random_node(std::mt19937_64& random, int children) {
 
 /// A block that shares its way must meet the boxes that a ray alone would.
 TEST_P(MonoNodes, AreWhatTheHostDecodes) {
-  const NodeLayout layout{GetParam(), path_tracer::kTraversalWidth};
+  const NodeLayout layout = GetParam();
   const auto node_bytes = std::size_t(layout.node_bytes());
   constexpr int kNodes = 500;
   testbench::NativeMachine machine(8, 1024, kNodes * node_bytes);
   std::mt19937_64 random(3);
   for (int slot = 0; slot < kNodes; ++slot) {
-    const int children = slot % (path_tracer::kTraversalWidth + 1);
+    const int children = slot % (layout.width + 1);
     encode_node(random_node(random, children), layout, {}, machine.mono() + std::size_t(slot) * node_bytes);
   }
   for (int slot = 0; slot < kNodes; ++slot) {
     const auto node = read_node(machine, {0}, layout, slot);
     const std::uint8_t* const encoded = machine.mono() + std::size_t(slot) * node_bytes;
-    ASSERT_EQ(node.children, slot % (path_tracer::kTraversalWidth + 1));
+    ASSERT_EQ(node.children, slot % (layout.width + 1));
     for (int child = 0; child < node.children; ++child) {
       const Box box = decode_box(encoded, layout, child);
       for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(node.lower[axis][std::size_t(child)], box.lower[axis]);
-        EXPECT_EQ(node.upper[axis][std::size_t(child)], box.upper[axis]);
+        const auto& four = node.four[child / 4];
+        EXPECT_EQ(four.lower[axis][std::size_t(child % 4)], box.lower[axis]);
+        EXPECT_EQ(four.upper[axis][std::size_t(child % 4)], box.upper[axis]);
       }
       const auto expected = decode_reference(encoded, layout, child);
       const auto found = path_tracer::PackedReference::unpack(node.reference[child]);
@@ -63,7 +64,6 @@ TEST_P(MonoNodes, AreWhatTheHostDecodes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, MonoNodes,
-                         testing::Values(NodeFormat::fp64, NodeFormat::fp32, NodeFormat::quantised8));
+INSTANTIATE_TEST_SUITE_P(Layouts, MonoNodes, testing::ValuesIn(test_support::node_layouts()));
 
 }  // namespace

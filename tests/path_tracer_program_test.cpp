@@ -110,8 +110,16 @@ TEST(ProgramConfigTest, ShapesOfTreesAreCheckedWhereThereIsOne) {
             "nodes a treelet: found 0, allowed is 1 to 1024");
   EXPECT_EQ(error_of(tree_with(&TreeShape::resident_nodes, 1025)),
             "resident nodes: found 1025, allowed is 1 to 1024");
-  EXPECT_EQ(error_of(tree_with(&TreeShape::layout, {path_tracer::NodeFormat::fp64, 8})),
-            "children a node: found 8, allowed is 4 to 4");
+  const auto error_of_layout = [](path_tracer::NodeFormat format, int width) {
+    return error_of(tree_with(&TreeShape::layout, {format, width}));
+  };
+  for (const int width : {2, 4, 8}) EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::fp32, width), "");
+  EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::fp64, 3),
+            "children a node: found 3, allowed is 2, 4 or 8");
+  EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::fp64, 16),
+            "children a node: found 16, allowed is 2, 4 or 8");
+  EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::quantised8, 2),
+            "children a node: found 2, allowed is 4 or 8 of quantised8");
 }
 
 TEST(ProgramConfigTest, BuffersFollowN) {

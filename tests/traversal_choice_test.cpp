@@ -79,10 +79,9 @@ TEST(ResidentNodes, AreAsManyAsFit) {
 }
 
 /// As `program` wants it, as it fits.
-ProgramConfig fitted(ProgramConfig program, const testbench::TreeWishes& wishes = {}) {
-  program.tree.treelet_nodes = wishes.treelet_nodes.value_or(program.tree.treelet_nodes);
-  program.tree.stack_entries = wishes.stack_entries.value_or(program.tree.stack_entries);
-  program.tree = testbench::tree_that_fits(program, kChip, wishes);
+ProgramConfig fitted(ProgramConfig program, const testbench::TreeWishes& wishes = {},
+                     std::size_t triangles = 1000) {
+  program.tree = testbench::tree_that_fits(triangles, program, kChip, wishes);
   return program;
 }
 
@@ -129,6 +128,41 @@ TEST(TreeThatFits, LeavesWishesAlone) {
   program.tree.resident_nodes = 64;  // of which no tree fits
   EXPECT_EQ(fitted(program).tree.stack_entries, program.tree.stack_entries);
   EXPECT_EQ(fitted(program).tree.treelet_nodes, program.tree.treelet_nodes);
+}
+
+TEST(TreeThatFits, HasWideNodesWhereTrianglesAreMany) {
+  constexpr std::size_t kMany = 1000000;
+  ProgramConfig program;
+  for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill, Traversal::lock_step}) {
+    program.traversal = traversal;
+    EXPECT_EQ(fitted(program, {}, 1000).tree.layout.width, 4);
+    const ProgramConfig wide = fitted(program, {}, kMany);
+    EXPECT_EQ(wide.tree.layout.width, 8);
+    EXPECT_EQ(wide.tree.treelet_nodes, 1);
+    EXPECT_TRUE(fits(wide));
+  }
+  program.traversal = Traversal::packets;
+  EXPECT_EQ(fitted(program, {}, kMany).tree.layout.width, 4);
+}
+
+TEST(TreeThatFits, HasNarrowNodesWhereWideOnesDoNotFit) {
+  ProgramConfig program;
+  program.traversal = Traversal::temporary_bin;
+  program.n = 3;
+  program.tree.resident_nodes = 1;
+  const ProgramConfig narrow = fitted(program, {}, 1000000);
+  EXPECT_EQ(narrow.tree.layout.width, 4);
+  EXPECT_TRUE(fits(narrow));
+}
+
+TEST(TreeThatFits, HasTheWidthAndVisitsWishedFor) {
+  ProgramConfig program;
+  program.traversal = Traversal::refill;
+  const ProgramConfig binary = fitted(program, {{}, {}, 2, 5}, 1000000);
+  EXPECT_EQ(binary.tree.layout.width, 2);
+  EXPECT_EQ(binary.tree.treelet_nodes, 4) << "as many children as other widths";
+  EXPECT_EQ(binary.tree.visits, 5);
+  EXPECT_EQ(fitted(program, {{}, {}, 8, {}}).tree.layout.width, 8);
 }
 
 TEST(ResidentNodes, AreNoMoreThanATreeHas) {

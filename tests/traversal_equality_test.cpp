@@ -10,6 +10,7 @@
 #include "testbench/scene/generated_scene.hpp"
 #include "testbench/scene/mesh.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/node_layouts.hpp"
 #include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
@@ -164,20 +165,20 @@ std::vector<std::vector<std::size_t>> lights_of(const Scene& scene) {
 /// All formats, leaves, treelets and resident pieces; stacks are tried of each.
 std::vector<TreeShape> shapes() {
   std::vector<TreeShape> shapes;
-  for (const NodeFormat format : {NodeFormat::fp64, NodeFormat::fp32, NodeFormat::quantised8})
+  for (const path_tracer::NodeLayout& layout : test_support::node_layouts())
     for (const int leaf_triangles : {1, 2, 4, 8})
       for (const int treelet_nodes : {1, 4, 16})
         for (const int resident_nodes : {1, 8})
-          shapes.push_back(
-              {{format, path_tracer::kTraversalWidth}, resident_nodes, treelet_nodes, leaf_triangles, 0});
+          shapes.push_back({layout, resident_nodes, treelet_nodes, leaf_triangles, 0});
   return shapes;
 }
 
 std::string describe(const TreeShape& shape) {
-  return "format " + std::to_string(int(shape.layout.format)) + ", " + std::to_string(shape.leaf_triangles) +
-         " triangles a leaf, " + std::to_string(shape.treelet_nodes) + " nodes a treelet, " +
-         std::to_string(shape.resident_nodes) + " resident, stack of " + std::to_string(shape.stack_entries) +
-         ", " + std::to_string(shape.visits) + " visits a turn";
+  return "format " + std::to_string(int(shape.layout.format)) + " of " + std::to_string(shape.layout.width) +
+         " children, " + std::to_string(shape.leaf_triangles) + " triangles a leaf, " +
+         std::to_string(shape.treelet_nodes) + " nodes a treelet, " + std::to_string(shape.resident_nodes) +
+         " resident, stack of " + std::to_string(shape.stack_entries) + ", " + std::to_string(shape.visits) +
+         " visits a turn";
 }
 
 constexpr int kStacks[] = {0, 1, 2, 8, 32};

@@ -3,16 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "testbench/bvh/node_format.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/node_layouts.hpp"
 
 namespace {
 
 using path_tracer::ChildReference;
-using path_tracer::kMaxTreeLevels;
-using path_tracer::NodeFormat;
+using path_tracer::max_tree_levels;
 using path_tracer::TreeShape;
 using testbench::Box;
 using testbench::make_tree_image;
@@ -35,8 +36,8 @@ class TreeImageOf : public testing::TestWithParam<test_support::Mesh> {};
 /// From slot 0 every triangle is met once, in a box that contains its own, within the levels that are told.
 TEST_P(TreeImageOf, LeadsToEveryTriangleInsideItsBoxes) {
   const std::vector<Box> boxes = boxes_of(test_support::mesh(GetParam()));
-  for (const NodeFormat format : {NodeFormat::fp64, NodeFormat::fp32, NodeFormat::quantised8}) {
-    const TreeShape shape{{format, path_tracer::kTraversalWidth}, 5, 3, 2, 8};
+  for (const path_tracer::NodeLayout& layout : test_support::node_layouts()) {
+    const TreeShape shape{layout, 5, 3, 2, 8};
     const TreeImage image = make_tree_image(boxes, shape);
     const int node_bytes = shape.layout.node_bytes();
     ASSERT_EQ(image.nodes.size(), std::size_t(image.slots) * std::size_t(node_bytes));
@@ -53,7 +54,7 @@ TEST_P(TreeImageOf, LeadsToEveryTriangleInsideItsBoxes) {
       open.pop_back();
       deepest = std::max(deepest, place.level);
       const std::uint8_t* const node = image.nodes.data() + place.slot * node_bytes;
-      for (int i = 0; i < path_tracer::kTraversalWidth; ++i) {
+      for (int i = 0; i < shape.layout.width; ++i) {
         const ChildReference child = testbench::decode_reference(node, shape.layout, i);
         const Box box = testbench::decode_box(node, shape.layout, i);
         if (child.count == 0) open.push_back({child.first, place.level + 1});
@@ -67,7 +68,7 @@ TEST_P(TreeImageOf, LeadsToEveryTriangleInsideItsBoxes) {
     }
     EXPECT_EQ(std::count(met.begin(), met.end(), 1), std::ptrdiff_t(met.size()));
     EXPECT_EQ(deepest, image.levels);
-    EXPECT_LE(image.levels, kMaxTreeLevels);
+    EXPECT_LE(image.levels, max_tree_levels(layout.width));
   }
 }
 
@@ -79,7 +80,7 @@ TEST(TreeImage, OfNothingIsARootThatLeadsNowhere) {
   const TreeImage image = make_tree_image({}, shape);
   EXPECT_TRUE(image.triangles.empty());
   EXPECT_EQ(image.slots, shape.resident_nodes);
-  for (int i = 0; i < path_tracer::kTraversalWidth; ++i)
+  for (int i = 0; i < shape.layout.width; ++i)
     EXPECT_EQ(testbench::decode_reference(image.nodes.data(), shape.layout, i).count,
               ChildReference::kNowhere);
 }
@@ -98,21 +99,27 @@ std::vector<Box> clump_and_outliers(int clump) {
 }
 
 TEST(TreeImage, KeepsToTheLevelsThatARayCanFollow) {
-  TreeShape shape;
-  shape.leaf_triangles = 1;
-  const TreeImage image = make_tree_image(clump_and_outliers(60000), shape);
-  EXPECT_GT(image.levels, kMaxTreeLevels - 4) << "a scene that is no challenge";
-  EXPECT_LE(image.levels, kMaxTreeLevels);
+  for (const int width : {4, 8}) {
+    TreeShape shape;
+    shape.layout.width = width;
+    shape.leaf_triangles = 1;
+    const TreeImage image = make_tree_image(clump_and_outliers(60000), shape);
+    EXPECT_GT(image.levels, max_tree_levels(width) - 4) << "a scene that is no challenge to width " << width;
+    EXPECT_LE(image.levels, max_tree_levels(width));
+  }
 }
 
-/// Of ten times as many it could not be so.
+/// Of ten times as many, or with two children a node, it could not be so.
 TEST(TreeImage, IsBalancedWhereItWouldBeTooDeep) {
-  TreeShape shape;
-  shape.leaf_triangles = 1;
   const std::vector<Box> boxes = clump_and_outliers(600000);
-  const TreeImage image = make_tree_image(boxes, shape);
-  EXPECT_EQ(image.triangles.size(), boxes.size());
-  EXPECT_LE(image.levels, 10);  // 4^10 is the first power of four that holds them
+  for (const auto& [width, levels] : std::map<int, int>{{2, 20}, {4, 10}}) {
+    TreeShape shape;
+    shape.layout.width = width;
+    shape.leaf_triangles = 1;
+    const TreeImage image = make_tree_image(boxes, shape);
+    EXPECT_EQ(image.triangles.size(), boxes.size());
+    EXPECT_LE(image.levels, levels);  // the first power of the width that holds them
+  }
 }
 
 }  // namespace

@@ -14,9 +14,6 @@ constexpr int kAxes = 3;
 // so that these are what stands between: a number of 4 bytes is converted; one of 8 bits is converted,
 // multiplied and added to; a power of two is made of its exponent in three.
 constexpr std::uint64_t kNodeInstructions = 6;  // its address, the references
-constexpr std::uint64_t kCoordinates = 2 * kAxes * kTraversalWidth;
-constexpr std::uint64_t kFloatInstructions = kCoordinates;
-constexpr std::uint64_t kQuantisedInstructions = 3 * kCoordinates + 3 * kAxes;
 
 template <class T>
 T load(const unsigned char* node, int offset) {
@@ -25,9 +22,10 @@ T load(const unsigned char* node, int offset) {
   return value;
 }
 
-std::uint64_t decoding_instructions(NodeFormat format) {
-  if (format == NodeFormat::fp64) return kNodeInstructions;
-  return kNodeInstructions + (format == NodeFormat::fp32 ? kFloatInstructions : kQuantisedInstructions);
+std::uint64_t decoding_instructions(const NodeLayout& layout) {
+  const auto coordinates = std::uint64_t(2 * kAxes * layout.width);
+  if (layout.format == NodeFormat::fp64) return kNodeInstructions;
+  return kNodeInstructions + (layout.format == NodeFormat::fp32 ? coordinates : 3 * coordinates + 3 * kAxes);
 }
 
 double coordinate(const unsigned char* node, const NodeLayout& layout, int component, int child) {
@@ -47,13 +45,14 @@ MonoNode read_node(cn::Machine& machine, cn::MonoPointer<std::uint64_t> nodes, c
   const auto words = static_cast<std::size_t>(layout.node_bytes()) / sizeof(std::uint64_t);
   const auto* const bytes = reinterpret_cast<const unsigned char*>(
       machine.read_mono(nodes + static_cast<std::uint64_t>(slot) * words, words));
-  machine.issue_mono(decoding_instructions(layout.format));
+  machine.issue_mono(decoding_instructions(layout));
   MonoNode node;
-  for (int child = 0; child < kTraversalWidth; ++child) {
-    const auto i = static_cast<std::size_t>(child);
+  for (int child = 0; child < layout.width; ++child) {
+    MonoNode::Four& four = node.four[child / 4];
+    const auto i = static_cast<std::size_t>(child % 4);
     for (int axis = 0; axis < kAxes; ++axis) {
-      node.lower[axis][i] = coordinate(bytes, layout, axis, child);
-      node.upper[axis][i] = coordinate(bytes, layout, kAxes + axis, child);
+      four.lower[axis][i] = coordinate(bytes, layout, axis, child);
+      four.upper[axis][i] = coordinate(bytes, layout, kAxes + axis, child);
     }
     node.reference[child] = load<std::uint32_t>(bytes, layout.reference_offset(child));
     if (node.reference[child] != PackedReference::kNowhere) node.children = child + 1;

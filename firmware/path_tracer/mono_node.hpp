@@ -14,9 +14,12 @@ namespace path_tracer {
 /// Boxes of a node's children, in double precision whatever the format: the same numbers as NodeReader makes
 /// of them in a PE.
 struct MonoNode {
-  cn::mono4<double> lower[3];  ///< by axis
-  cn::mono4<double> upper[3];
-  std::uint32_t reference[kTraversalWidth];
+  struct Four {                  ///< children, as a vector instruction takes them
+    cn::mono4<double> lower[3];  ///< by axis
+    cn::mono4<double> upper[3];
+  };
+  Four four[kMaxNodeWidth / 4];
+  std::uint32_t reference[kMaxNodeWidth];
   int children = 0;  ///< these come first
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/cn/poly_pointer.hpp"
 #include "firmware/path_tracer/traversal_record.hpp"
 #include "firmware/path_tracer/triangle.hpp"
 

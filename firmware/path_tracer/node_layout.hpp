@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 /// How a node of the tree of boxes lies in mono memory and, once loaded, in a PE's SRAM. All children of a
@@ -15,6 +16,10 @@ enum class NodeFormat : std::uint8_t {
   quantised8,
 };
 inline constexpr int kNodeFormats = 3;
+
+/// A node has 2, 4 or 8 children at most.
+inline constexpr int kNodeWidths = 3;
+inline constexpr int kMaxNodeWidth = 8;
 
 /// Where a child leads. `count` triangles from `first` on; or the node in slot `first`, when count is 0; or
 /// nowhere.
@@ -72,6 +77,14 @@ struct NodeLayout {
     return (boxes_end + 7) / 8 * 8 + child * static_cast<int>(sizeof(std::uint32_t));
   }
   constexpr int node_bytes() const { return (reference_offset(width) + 7) / 8 * 8; }
+
+  /// 0, 1 or 2.
+  constexpr std::size_t width_number() const { return width == 8 ? 2 : width == 4 ? 1 : 0; }
+
+  /// Of quantised8, two children and the frame take what they take as fp32, so there is no such kernel.
+  constexpr bool has_kernel() const {
+    return width == 4 || width == 8 || (width == 2 && format != NodeFormat::quantised8);
+  }
 };
 
 }  // namespace path_tracer

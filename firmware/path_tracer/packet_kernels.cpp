@@ -36,23 +36,23 @@ void want(const WantArguments& arguments) {
   cn::keep(arguments.keys[arguments.place].read() <= arguments.packet.get(&PacketRecord::limit),
            *arguments.wanting);
   if (!arguments.is_node) return;
-  for (int i = 0; i < kTraversalWidth; ++i)
-    arguments.keys[PacketKeys::place(arguments.level, i)].write(poly<std::int32_t>(kNotMet));
+  for (int i = 0; i < arguments.keys.width(); ++i)
+    arguments.keys[arguments.keys.place(arguments.level, i)].write(poly<std::int32_t>(kNotMet));
 }
 
-/// Where a ray enters and leaves the children's boxes, by axis.
+/// Where a ray enters and leaves four children's boxes, by axis.
 struct Slabs4 {
   poly4<double> entry[kAxes];
   poly4<double> exit[kAxes];
 
   /// The same numbers as BoxRay and NodeVisitor make. Nodes are the same for all PEs, but which side of a box
   /// is near is not, so that both are computed before they are told apart.
-  Slabs4(const MonoNode& node, const Point3& origin, const Direction3& minus_inverse) {
+  Slabs4(const MonoNode::Four& four, const Point3& origin, const Direction3& minus_inverse) {
     for (int axis = 0; axis < kAxes; ++axis) {
       const poly<double>& scale = component(minus_inverse, axis);
       const poly4<double> from = same4(component(origin, axis));
-      const poly4<double> lower = (from - node.lower[axis]) * same4(scale);
-      const poly4<double> upper = (from - node.upper[axis]) * same4(scale);
+      const poly4<double> lower = (from - four.lower[axis]) * same4(scale);
+      const poly4<double> upper = (from - four.upper[axis]) * same4(scale);
       const mask backward = scale > 0.0;
       entry[axis].become(cn::select(backward, upper, lower));
       exit[axis].become(cn::select(backward, lower, upper));
@@ -62,18 +62,22 @@ struct Slabs4 {
 
 void visit(const VisitArguments& arguments) {
   const MonoNode& node = *arguments.node;
-  const Slabs4 slabs(node, arguments.record.get(&TraversalRecord::origin),
-                     arguments.packet.get(&PacketRecord::minus_inverse));
+  const Point3 origin = arguments.record.get(&TraversalRecord::origin);
+  const Direction3 minus_inverse = arguments.packet.get(&PacketRecord::minus_inverse);
   const poly<std::int32_t> limit = arguments.packet.get(&PacketRecord::limit);
-  poly<std::int32_t> key[kTraversalWidth];
+  poly<std::int32_t> key[kMaxNodeWidth];
   poly<std::int32_t> first = kNotMet;
-  for (int i = 0; i < node.children; ++i) {
-    const poly<double> from = from_origin(slabs.entry[0][i], slabs.entry[1][i], slabs.entry[2][i]);
-    const poly<double> to = cn::min(cn::min(slabs.exit[0][i], slabs.exit[1][i]), slabs.exit[2][i]);
-    const poly<std::int32_t> entry = signed_high_word(from);
-    key[i].become(cn::select((from <= to) & (entry <= limit), entry, poly<std::int32_t>(kNotMet)));
-    first.become(cn::min(first, key[i]));
-    arguments.keys[PacketKeys::place(arguments.level, i)].write(key[i]);
+  for (int four = 0; four < node.children; four += 4) {
+    const Slabs4 slabs(node.four[four / 4], origin, minus_inverse);
+    for (int i = 0; i < 4 && four + i < node.children; ++i) {
+      const poly<double> from = from_origin(slabs.entry[0][i], slabs.entry[1][i], slabs.entry[2][i]);
+      const poly<double> to = cn::min(cn::min(slabs.exit[0][i], slabs.exit[1][i]), slabs.exit[2][i]);
+      const poly<std::int32_t> entry = signed_high_word(from);
+      const int child = four + i;
+      key[child].become(cn::select((from <= to) & (entry <= limit), entry, poly<std::int32_t>(kNotMet)));
+      first.become(cn::min(first, key[child]));
+      arguments.keys[arguments.keys.place(arguments.level, child)].write(key[child]);
+    }
   }
   const mask meets_any = first != poly<std::int32_t>(kNotMet);
   for (int i = 0; i < node.children; ++i) cn::keep((key[i] == first) & meets_any, arguments.enters_first[i]);

@@ -25,11 +25,14 @@ inline constexpr std::int32_t kNotMet = 0x7fffffff;
 class PacketKeys {
  public:
   PacketKeys() = default;
-  explicit PacketKeys(cn::PolySpan span) : offset_bytes_(span.offset_bytes) {}
+  /// @param span bytes(width) of them
+  PacketKeys(cn::PolySpan span, int width) : offset_bytes_(span.offset_bytes), width_(width) {}
+
+  static constexpr int bytes(int width) { return (2 + width * max_tree_levels(width)) / 2 * 8; }
 
   static constexpr int kRoot = 0;
-  static constexpr int kBytes = (2 + kTraversalWidth * kMaxTreeLevels) / 2 * 8;
-  static constexpr int place(int level, int child) { return 1 + level * kTraversalWidth + child; }
+  int place(int level, int child) const { return 1 + level * width_ + child; }
+  int width() const { return width_; }
 
   PolyField<std::int32_t> operator[](int place) const {
     return {offset_bytes_ + place * int{sizeof(std::int32_t)}};
@@ -37,6 +40,7 @@ class PacketKeys {
 
  private:
   int offset_bytes_ = 0;
+  int width_ = 0;
 };
 
 /// Behind the kernel `enter`.

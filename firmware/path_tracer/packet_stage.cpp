@@ -6,10 +6,14 @@ namespace path_tracer {
 namespace {
 
 // Instructions of the control unit (assumed): the stack's two words and its pointer, the parts of a
-// reference, and a branch; the order of four children is a network of five comparisons and what they move.
+// reference, and a branch; the order of children is a network of comparisons, one in four instructions.
 constexpr std::uint64_t kPushInstructions = 5;
 constexpr std::uint64_t kPopInstructions = 8;
-constexpr std::uint64_t kOrderInstructions = 20;
+
+std::uint64_t order_instructions(int width) {
+  const std::uint64_t comparisons = width == 8 ? 19 : width == 4 ? 5 : 1;
+  return 4 * comparisons;
+}
 
 int bits_of(int numbers) {
   int bits = 0;
@@ -25,7 +29,8 @@ PacketStage::PacketStage(const StageContext& context, TreeContext& tree)
   BufferCutter cutter(memory.allocate("packet", int{sizeof(TraversalRecord)} + int{sizeof(PacketRecord)}));
   record_ = cutter.take<TraversalRecord>();
   packet_ = cutter.take<PacketRecord>();
-  keys_ = PacketKeys(memory.allocate("packet's keys", PacketKeys::kBytes));
+  const int width = tree.tree.shape.layout.width;
+  keys_ = PacketKeys(memory.allocate("packet's keys", PacketKeys::bytes(width)), width);
 }
 
 void PacketStage::load(std::uint64_t step, int block) {
@@ -114,7 +119,7 @@ LaneMask PacketStage::rays_that_want(const Entry& entry) {
 void PacketStage::visit(const Entry& entry, const LaneMask& rays) {
   const MonoNode node =
       read_node(context_.machine, context_.layout.nodes, tree_.tree.shape.layout, entry.reference.first);
-  LaneMask enters_first[kTraversalWidth];
+  LaneMask enters_first[kMaxNodeWidth];
   VisitArguments arguments;
   arguments.record = record_;
   arguments.packet = packet_;
@@ -130,8 +135,8 @@ void PacketStage::visit(const Entry& entry, const LaneMask& rays) {
 /// most directions, which needs no votes, visits so much more that it is no faster. Without a vote no ray
 /// meets any.
 void PacketStage::push_children(const MonoNode& node, int level, const LaneMask* enters_first) {
-  int votes[kTraversalWidth] = {};
-  int order[kTraversalWidth] = {};
+  int votes[kMaxNodeWidth] = {};
+  int order[kMaxNodeWidth] = {};
   int all_votes = 0;
   for (int i = 0; i < node.children; ++i) {
     votes[i] = context_.machine.count(enters_first[i]);
@@ -139,12 +144,12 @@ void PacketStage::push_children(const MonoNode& node, int level, const LaneMask*
     order[i] = i;
   }
   if (all_votes == 0) return;
-  context_.machine.issue_mono(kOrderInstructions + kPushInstructions * std::uint64_t(node.children));
+  context_.machine.issue_mono(order_instructions(keys_.width()) +
+                              kPushInstructions * std::uint64_t(node.children));
   std::stable_sort(order, order + node.children, [&](int a, int b) { return votes[a] < votes[b]; });
   for (int i = 0; i < node.children; ++i) {
     const int child = order[i];
-    stack_.push_back(
-        {PackedReference::unpack(node.reference[child]), level + 1, PacketKeys::place(level, child)});
+    stack_.push_back({PackedReference::unpack(node.reference[child]), level + 1, keys_.place(level, child)});
   }
 }
 

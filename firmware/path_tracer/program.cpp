@@ -36,7 +36,8 @@ void validate(const TreeShape& tree) {
     require(value >= least && value <= most, what, std::to_string(value),
             std::to_string(least) + " to " + std::to_string(most));
   };
-  range("children a node", tree.layout.width, kTraversalWidth, kTraversalWidth);
+  require(tree.layout.has_kernel(), "children a node", std::to_string(tree.layout.width),
+          tree.layout.format == NodeFormat::quantised8 ? "4 or 8 of quantised8" : "2, 4 or 8");
   range("triangles a leaf", tree.leaf_triangles, 1, kMaxLeafTriangles);
   range("nodes a treelet", tree.treelet_nodes, 1, kMaxTreeletNodes);
   range("resident nodes", tree.resident_nodes, 1, kMaxTreeletNodes);

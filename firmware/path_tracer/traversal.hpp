@@ -5,9 +5,6 @@
 
 namespace path_tracer {
 
-/// No slot is in a treelet that begins here.
-inline constexpr std::int32_t kNoTreelet = 1 << 30;
-
 /// The part of a TraversalRecord that says where a ray goes on, in registers while it does.
 struct Way {
   poly<std::int32_t> node;
@@ -45,7 +42,7 @@ struct Way {
 };
 
 /// Takes rays from node to node as far as the nodes in SRAM go. See TraversalRecord for the method.
-template <NodeFormat format>
+template <NodeFormat format, int width>
 class Traveller {
  public:
   /// @param treelet first slot of the loaded treelet
@@ -111,9 +108,9 @@ class Traveller {
   }
 
   void visit() {
-    const VisitOrder order = visitor_.visit(address(way_.node), limit_);
-    poly<std::uint64_t> entry[kTraversalWidth];
-    for (int i = 0; i < kTraversalWidth; ++i) entry[i].become(order.entry[i]);
+    const VisitOrder<width> order = visitor_.visit(address(way_.node), limit_);
+    poly<std::uint64_t> entry[width];
+    for (int i = 0; i < width; ++i) entry[i].become(order.entry[i]);
     const poly<std::int32_t> trail_shift = way_.level * kTrailBits;
     const poly<std::int32_t> left_behind = cn::reinterpret_word<std::int32_t>(
         cn::low_word(cn::shift_right(way_.trail, trail_shift)) & poly<std::uint32_t>((1u << kTrailBits) - 1));
@@ -125,8 +122,8 @@ class Traveller {
     way_.more = way_.more | cn::select(has_siblings, level_bit, poly<std::uint32_t>(0u));
     if (tree_.shape.stack_entries > 0) {
       cn::poly_if_any(has_siblings, [&] {
-        for (int i = kTraversalWidth - 1; i > 0; --i) {
-          const mask is_last = i + 1 < kTraversalWidth ? entry[i + 1] == none : entry[i] == entry[i];
+        for (int i = width - 1; i > 0; --i) {
+          const mask is_last = i + 1 < width ? entry[i + 1] == none : entry[i] == entry[i];
           const poly<std::uint64_t> flag =
               cn::select(is_last, poly<std::uint64_t>(PackedReference::kFlag), poly<std::uint64_t>(0u));
           cn::poly_if(entry[i] != none, [&] { push(entry[i] | flag); });
@@ -144,11 +141,11 @@ class Traveller {
   }
 
   /// Leaves out the children that the trail has behind it.
-  static void skip(const poly<std::int32_t>& left_behind, poly<std::uint64_t> (&entry)[kTraversalWidth]) {
-    for (int skipped = 0; skipped < kTraversalWidth; ++skipped)
+  static void skip(const poly<std::int32_t>& left_behind, poly<std::uint64_t> (&entry)[width]) {
+    for (int skipped = 0; skipped < width; ++skipped)
       cn::poly_if(left_behind > skipped, [&] {
-        for (int i = 0; i + 1 < kTraversalWidth; ++i) entry[i] = entry[i + 1];
-        entry[kTraversalWidth - 1] = kNoEntry;
+        for (int i = 0; i + 1 < width; ++i) entry[i] = entry[i + 1];
+        entry[width - 1] = kNoEntry;
       });
   }
 
@@ -183,9 +180,11 @@ class Traveller {
     cn::poly_if(cn::high_word(entry) <= limit_, [&] { enter(reference); });
   }
 
+  static constexpr int kTrailBits = trail_bits(width);
+
   const TreeInSram& tree_;
   int stack_offset_;
-  NodeVisitor<format> visitor_;
+  NodeVisitor<format, width> visitor_;
   poly<std::int32_t> treelet_;
   poly<std::uint32_t> limit_;
   Way& way_;

@@ -2,27 +2,15 @@
 
 #include "firmware/path_tracer/traversal_kernels.hpp"
 
+#include "firmware/cn/exact.hpp"
+#include "firmware/cn/indexed.hpp"
 #include "firmware/cn/least.hpp"
 #include "firmware/path_tracer/nearest_face.hpp"
 #include "firmware/path_tracer/places.hpp"
-#include "firmware/path_tracer/traversal.hpp"
+#include "firmware/path_tracer/traverse_kernels.hpp"
 
 namespace path_tracer {
 namespace {
-
-/// A leaf that each PE has its own of.
-struct PolyTriangles {
-  PolyPointer<TriangleRecord> first;
-  int count;
-  const poly<std::int32_t>& there;
-
-  PolyTriangle operator()(int i) const {
-    const PolyPointer<TriangleRecord> at = first[i];
-    return {at.get(&TriangleRecord::vertex), at.get(&TriangleRecord::edge1), at.get(&TriangleRecord::edge2),
-            at.get(&TriangleRecord::back),   at.get(&TriangleRecord::face),  at.get(&TriangleRecord::number)};
-  }
-  mask where_there(int i, const mask& lanes) const { return lanes & (there > i); }
-};
 
 /// A light's number, by its place among the lights.
 poly<std::int32_t> light_number(const poly<MonoAddress>& place, MonoAddress lights) {
@@ -113,44 +101,6 @@ void locate(const LocateArguments& arguments) {
   cn::keep(elsewhere, *arguments.needs_treelet);
 }
 
-/// Tests the leaf. A shadow ray is over when something is nearer than its light; one that missed its light
-/// finds out what else it hits, as the light's face may have other triangles.
-void test_leaf(const TraverseArguments& arguments, const RayOperands& ray, NearestFace& nearest, Way& way) {
-  const poly<std::int32_t> light_face = arguments.record.get(&TraversalRecord::light_face);
-  nearest.face.become(light_face);
-  const poly<std::int32_t> there =
-      cn::select(cn::recall(*arguments.loaded_leaf), way.leaf_count, poly<std::int32_t>(0));
-  search(ray, arguments.reach, PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), there},
-         nearest);
-  cn::poly_if(there > 0, [&] {
-    const mask nothing = nearest.number < 0;
-    arguments.record.set(&TraversalRecord::light_face,
-                         cn::select(nothing, poly<std::int32_t>(kNoFace), light_face));
-    const mask occluded = (light_face != poly<std::int32_t>(kNoFace)) & (nearest.face != light_face);
-    way.node = cn::select(occluded & !nothing, poly<std::int32_t>(kTraversalOver), way.node);
-    way.leaf_count = 0;
-  });
-  arguments.record.set(&TraversalRecord::distance, nearest.distance);
-  arguments.record.set(&TraversalRecord::determinant, nearest.determinant);
-  arguments.record.set(&TraversalRecord::number, nearest.number);
-}
-
-template <NodeFormat format>
-void traverse(const TraverseArguments& arguments) {
-  const RayOperands ray = ray_of(arguments.record);
-  NearestFace nearest;
-  nearest.distance.become(arguments.record.get(&TraversalRecord::distance));
-  nearest.determinant.become(arguments.record.get(&TraversalRecord::determinant));
-  nearest.number.become(arguments.record.get(&TraversalRecord::number));
-  Way way(arguments.record);
-  if (arguments.loaded_leaf != nullptr) test_leaf(arguments, ray, nearest, way);
-  const poly<double> limit = latest_entry(nearest.distance / cn::abs(nearest.determinant));
-  const BoxRay box_ray(ray.origin, ray.direction);
-  Traveller<format>(arguments.tree, arguments.record, box_ray, arguments.treelet.read(), limit, way).travel();
-  way.write(arguments.record);
-  cn::keep(!way.is_over(), *arguments.alive);
-}
-
 void finish(const FinishArguments& arguments) {
   const PolyPointer<TraversalRecord>& record = arguments.record;
   Nearest nearest;
@@ -212,21 +162,15 @@ void append_to_blocks(const AppendToBlocksArguments& arguments) {
   }
 }
 
-template <NodeFormat format>
-constexpr cn::Kernel<TraverseArguments> traverse_kernel() {
-  return cn::kernel<TraverseArguments, traverse<format>>("traverse");
-}
-
 }  // namespace
 
 const TraversalKernels& TRAVERSAL_KERNELS() {
-  static constexpr TraversalKernels table{
+  static const TraversalKernels table{
       cn::kernel<EnqueueArguments, enqueue>("enqueue"),
       cn::kernel<TakeRaysArguments, take_rays>("take_rays"),
       cn::kernel<EnterArguments, enter>("enter"),
       cn::kernel<LocateArguments, locate>("locate"),
-      {traverse_kernel<NodeFormat::fp64>(), traverse_kernel<NodeFormat::fp32>(),
-       traverse_kernel<NodeFormat::quantised8>()},
+      {TRAVERSE_KERNELS<2>(), TRAVERSE_KERNELS<4>(), TRAVERSE_KERNELS<8>()},
       cn::kernel<FinishArguments, finish>("finish"),
       cn::kernel<AppendRaysArguments, append_rays>("append_rays"),
       cn::kernel<RecallArguments, recall>("recall"),

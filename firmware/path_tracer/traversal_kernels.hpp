@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "firmware/cn/kernel.hpp"
 #include "firmware/cn/level.hpp"
 #include "firmware/path_tracer/traversal_record.hpp"
@@ -132,12 +134,15 @@ struct AppendToBlocksArguments {
   PolyField<MonoAddress> place;
 };
 
+/// By NodeFormat, where NodeLayout::has_kernel().
+using TraverseKernels = std::array<cn::Kernel<TraverseArguments>, kNodeFormats>;
+
 struct TraversalKernels {
   cn::Kernel<EnqueueArguments> enqueue;
   cn::Kernel<TakeRaysArguments> take_rays;
   cn::Kernel<EnterArguments> enter;
   cn::Kernel<LocateArguments> locate;
-  cn::Kernel<TraverseArguments> traverse[kNodeFormats];  ///< by NodeFormat
+  TraverseKernels traverse[kNodeWidths];
   cn::Kernel<FinishArguments> finish;
   cn::Kernel<AppendRaysArguments> append_rays;
   cn::Kernel<RecallArguments> recall;
@@ -145,6 +150,10 @@ struct TraversalKernels {
   cn::Kernel<EqualArguments> equal;
   cn::Kernel<BroadcastArguments> broadcast;
   cn::Kernel<AppendToBlocksArguments> append_to_blocks;
+
+  const cn::Kernel<TraverseArguments>& traverse_through(const NodeLayout& layout) const {
+    return traverse[layout.width_number()][static_cast<std::size_t>(layout.format)];
+  }
 };
 
 }  // namespace path_tracer

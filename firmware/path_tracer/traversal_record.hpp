@@ -9,15 +9,18 @@ namespace path_tracer {
 inline constexpr std::int32_t kNextOnStack = -1;
 inline constexpr std::int32_t kTraversalOver = -2;
 
+/// No slot is in a treelet that begins here.
+inline constexpr std::int32_t kNoTreelet = 1 << 30;
+
 /// A ray on its way through the tree, in the traversal bin: what it found so far and where it goes on. Behind
 /// it lie the entries of its short stack, 8 bytes each.
 ///
 /// Children of a node are visited in the order of their entries. `trail` counts for each level how many the
-/// path from the root has left behind, 3 bits a level, and `more` has a bit for each level with siblings
-/// still to come. The short stack holds the latest of those; when it has lost the older ones, the ray starts
-/// again at the root and follows the trail (Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010;
-/// Vaidyanathan, Woop, Benthin, "Wide BVH Traversal with a Short Stack", HPG 2019). So no depth and no stack
-/// loses a hit.
+/// path from the root has left behind, as many bits a level as that takes, and `more` has a bit for each
+/// level with siblings still to come. The short stack holds the latest of those; when it has lost the older
+/// ones, the ray starts again at the root and follows the trail (Laine, "Restart Trail for Stackless BVH
+/// Traversal", HPG 2010; Vaidyanathan, Woop, Benthin, "Wide BVH Traversal with a Short Stack", HPG 2019). So
+/// no depth and no stack loses a hit.
 struct TraversalRecord {
   vec3<double> origin{};
   vec3<double> direction{};
@@ -42,9 +45,15 @@ struct TraversalRecord {
 inline constexpr int kStackEntryBytes = 8;
 inline constexpr std::uint64_t kNoEntry = ~std::uint64_t{0};
 
-inline constexpr int kTraversalWidth = 4;  ///< children a node: one vector instruction's
-inline constexpr int kTrailBits = 3;       ///< 0 to kTraversalWidth
-inline constexpr int kMaxTreeLevels = 64 / kTrailBits;
+/// Bits of the trail for a level, which counts from 0 to the width.
+constexpr int trail_bits(int width) {
+  return width == 8 ? 4 : width == 4 ? 3 : 2;
+}
+/// That the trail has room for: 32, 21 or 16.
+constexpr int max_tree_levels(int width) {
+  return 64 / trail_bits(width);
+}
+
 inline constexpr int kMaxStackEntries = 32;
 inline constexpr int kMaxLeafTriangles = 8;
 inline constexpr int kMaxVisits = 1024;
@@ -56,7 +65,7 @@ inline constexpr int kLightRun = 2;
 
 /// The tree as kernels see it.
 struct TreeShape {
-  NodeLayout layout{NodeFormat::fp32, kTraversalWidth};
+  NodeLayout layout;
   int resident_nodes = 8;  ///< slots [0, resident_nodes) stay in every PE's SRAM
   int treelet_nodes = 2;   ///< further slots are loaded so many at a time
   int leaf_triangles = 2;  ///< at most

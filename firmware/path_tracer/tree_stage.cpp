@@ -117,8 +117,7 @@ LaneMask TreeStage::traverse(std::uint64_t step, PolyPointer<TraversalRecord> re
   arguments.reach = tree_.reach;
   arguments.loaded_leaf = needs.leaves > 0 ? &needs.leaf : nullptr;
   arguments.alive = &alive;
-  const auto format = static_cast<std::size_t>(tree_.tree.shape.layout.format);
-  context_.machine.run(kernels_.traverse[format], arguments, rays);
+  context_.machine.run(kernels_.traverse_through(tree_.tree.shape.layout), arguments, rays);
   return alive;
 }
 

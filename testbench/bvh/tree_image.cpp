@@ -19,7 +19,7 @@ TreeImage make_tree_image(const std::vector<Box>& boxes, const path_tracer::Tree
   BvhOptions options;
   options.width = shape.layout.width;
   options.max_leaf_triangles = shape.leaf_triangles;
-  options.max_depth = path_tracer::kMaxTreeLevels;
+  options.max_depth = path_tracer::max_tree_levels(options.width);
   Bvh bvh = build_bvh(boxes, options);
   TreeImage image;
   image.levels = levels(bvh);

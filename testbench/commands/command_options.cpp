@@ -160,10 +160,13 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
   command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")
       ->transform(named_values(node_formats_by_name()))
       ->default_str(node_format_name(tree.layout.format));
+  command.add_option("--node-width", wishes_.node_width, "Children of a node: 2, 4 or 8")
+      ->check(CLI::IsMember({2, 4, 8}))
+      ->default_str("what the scene makes fastest");
   command.add_option("--leaf-triangles", tree.leaf_triangles, "Triangles of a leaf, at most")
       ->capture_default_str();
   command.add_option("--treelet-nodes", wishes_.treelet_nodes, "Nodes that a PE loads at a time")
-      ->default_str(std::to_string(tree.treelet_nodes) + ", fewer if they do not fit");
+      ->default_str("8 / node width, fewer if they do not fit");
   command.add_option("--resident-nodes", tree.resident_nodes, "Nodes around the root that every PE keeps")
       ->default_str("as many as fit");
   command
@@ -171,18 +174,16 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
                   "Entries of a ray's short stack: 0 or a power of two")
       ->default_str(std::to_string(tree.stack_entries) + ", fewer if they do not fit");
   command
-      .add_option("--visits", tree.visits,
+      .add_option("--visits", wishes_.visits,
                   "Nodes that a ray visits before PEs load again, at most; 0: all that are in SRAM")
-      ->capture_default_str();
+      ->default_str(std::to_string(tree.visits) + ", of narrower nodes more, of wider fewer");
 }
 
 std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig& chip,
                                     path_tracer::ProgramConfig& program) const {
-  program.tree.treelet_nodes = wishes_.treelet_nodes.value_or(program.tree.treelet_nodes);
-  program.tree.stack_entries = wishes_.stack_entries.value_or(program.tree.stack_entries);
   const TraversalChoice choice = choose_traversal(scene.triangles.size(), program.tree, chip);
   program.traversal = chosen_.value_or(choice.traversal);
-  if (program.uses_tree()) program.tree = tree_that_fits(program, chip, wishes_);
+  if (program.uses_tree()) program.tree = tree_that_fits(scene.triangles.size(), program, chip, wishes_);
   complete_traversal(scene.triangles.size(), chip, program);
   return chosen_ ? "" : choice.reason;
 }

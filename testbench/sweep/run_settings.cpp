@@ -97,6 +97,17 @@ RunParameter node_format() {
           }};
 }
 
+RunParameter node_width() {
+  static const Values widths = {"2", "4", "8"};
+  return {"firmware.node_width", one_of(widths), Effect::stream,
+          [](RunSettings& run, const std::string& value) {
+            if (std::find(widths.begin(), widths.end(), value) == widths.end()) return false;
+            run.options.program.tree.layout.width = std::stoi(value);
+            return true;
+          },
+          [](const RunSettings& run) { return std::to_string(run.options.program.tree.layout.width); }};
+}
+
 template <int ProgramConfig::*member, int low, int high>
 RunParameter firmware_integer(const std::string& name) {
   return {"firmware." + name, integers(low, high), Effect::stream,
@@ -209,6 +220,7 @@ std::vector<RunParameter> declare() {
           firmware_integer<&ProgramConfig::pixel_stride, 1, 1 << 30>("pixel_stride"),
           firmware_choice<&ProgramConfig::traversal, traversal_names>("traversal"),
           node_format(),
+          node_width(),
           tree_integer<&TreeShape::leaf_triangles, 1, path_tracer::kMaxLeafTriangles>("leaf_triangles"),
           tree_integer<&TreeShape::treelet_nodes, 1, path_tracer::kMaxTreeletNodes>("treelet_nodes"),
           tree_integer<&TreeShape::resident_nodes, 1, path_tracer::kMaxTreeletNodes>("resident_nodes"),

@@ -235,8 +235,7 @@ LaneMask RaySearch::traverse(const SearchScene& scene, const Offsets& at, const 
   arguments.reach = scene.reach;
   arguments.loaded_leaf = has_leaf;
   arguments.alive = &alive;
-  kernels_.traversal().traverse[std::size_t(scene.shape.layout.format)].run(arguments, memory_, rays,
-                                                                            issued_);
+  kernels_.traversal().traverse_through(scene.shape.layout).run(arguments, memory_, rays, issued_);
   turns_ += std::uint64_t(rays.count());
   return alive;
 }

@@ -81,7 +81,8 @@ void Agenda::do_tasks_of(Cycles cycle) {
   }
   const std::size_t list = cycle % kNear;
   std::vector<Task>& tasks = near_[list];
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
+  // A task may add to the list that it stands in.
+  for (std::size_t i = 0; i < tasks.size(); ++i) {  // NOLINT(modernize-loop-convert)
     const Task task = std::move(tasks[i]);
     --entries_;
     task();

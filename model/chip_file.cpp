@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -77,10 +78,10 @@ class FileReader {
 
  private:
   static bool is_group(const std::string& key) {
-    for (const ParameterInfo& parameter : parameter_table()) {
-      if (parameter.key.compare(0, key.size() + 1, key + ".") == 0) return true;
-    }
-    return false;
+    const std::vector<ParameterInfo>& table = parameter_table();
+    return std::any_of(table.begin(), table.end(), [&](const ParameterInfo& parameter) {
+      return parameter.key.compare(0, key.size() + 1, key + ".") == 0;
+    });
   }
 
   void read_group(const toml::node& node, const std::string& key) {

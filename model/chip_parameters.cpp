@@ -110,7 +110,7 @@ std::string real_text(double number) {
   const std::to_chars_result result =
       plain ? std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::fixed)
             : std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-  return std::string(buffer.data(), result.ptr);
+  return {buffer.data(), result.ptr};
 }
 
 /// What must hold between two parameters; both are named, the range of each alone has been checked.

@@ -14,8 +14,11 @@ void ControlUnit::start_thread(int priority, const std::string& name, std::funct
     throw cn::MachineFault("start of thread '" + name +
                            "': an approximately timed chip runs one hardware thread; run it loosely timed");
   const int slot = threads_.start(priority, name);
+  // An aggregate with an event cannot move, so there is no make_unique of it.
+  // NOLINTBEGIN(modernize-make-unique)
   if (!processes_[0]) processes_[0].reset(new ThreadProcess{{}, true, {}});
   processes_[std::size_t(slot)].reset(new ThreadProcess{std::move(body), false, {}});
+  // NOLINTEND(modernize-make-unique)
   report_thread(slot, ThreadState::ready);
   if (timed_) let_higher_priority_run();
 }

@@ -222,7 +222,7 @@ std::string HazardChecker::describe(const Request& request, bool with_start) con
 }
 
 std::string HazardChecker::mono_name(const MonoRange& range) const {
-  const std::string bytes = "mono bytes " + range_text(range.first, range.bytes);
+  std::string bytes = "mono bytes " + range_text(range.first, range.bytes);
   for (const MonoName& named : mono_names_)
     if (range.first >= named.range.first && range.first < named.range.first + named.range.bytes)
       return "'" + named.name + "' (" + bytes + ")";
@@ -230,7 +230,7 @@ std::string HazardChecker::mono_name(const MonoRange& range) const {
 }
 
 std::string HazardChecker::poly_name(cn::PolySpan bytes) const {
-  const std::string text =
+  std::string text =
       "poly bytes " + range_text(std::uint64_t(bytes.offset_bytes), std::uint64_t(bytes.size_bytes));
   for (const cn::PolyMemory::Buffer& buffer : machine_.poly_memory().buffers())
     if (overlap(buffer.span, bytes)) return "'" + buffer.name + "' (" + text + ")";

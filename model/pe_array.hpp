@@ -61,7 +61,7 @@ class PeArray : public sc_core::sc_module {
   /// Books a kernel and returns what it takes. Mono instructions go on beside poly ones through the issue
   /// queue; the longer stream counts. So do vector loads beside vector arithmetic, if the chip overlaps them.
   /// @param waited_before of the control unit since the kernel before
-  Cost retire(const char* kernel, const cn::IssueTree& issued, const PioWaits& waited_before = {});
+  Cost retire(const char* name, const cn::IssueTree& issued, const PioWaits& waited_before = {});
 
   /// In the order in which they first ran.
   std::vector<KernelStatistics> kernels() const;

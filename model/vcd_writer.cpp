@@ -68,8 +68,9 @@ void VcdWriter::define(const std::vector<Signal>& signals) {
     }
     const int width = signals[i].width;
     const std::string range = width == 1 ? "" : " [" + std::to_string(width - 1) + ":0]";
-    text += "$var wire " + std::to_string(width) + " " +
-            std::string(codes_[i].text.data(), codes_[i].length) + " " + name + range + " $end\n";
+    text.append("$var wire ").append(std::to_string(width)).append(" ");
+    text.append(codes_[i].text.data(), codes_[i].length).append(" ");
+    text.append(name).append(range).append(" $end\n");
   }
   leave_to(0);
   text += "$enddefinitions $end\n";

@@ -33,7 +33,7 @@ fs::path create_temporary(const fs::path& path) {
   if (fs::is_directory(status)) fail_input(path, "a directory");
   if (fs::exists(status) && !fs::is_regular_file(status)) fail_input(path, "a device, pipe or socket");
   for (int number = 0;; ++number) {
-    const fs::path temporary =
+    fs::path temporary =
         path.parent_path() / ("." + path.filename().string() + "." + std::to_string(getpid()) + "." +
                               std::to_string(number) + ".tmp");
     const int descriptor = open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);

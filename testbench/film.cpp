@@ -20,7 +20,7 @@ constexpr int kSumFractionBits = 74;
 constexpr int kSquareFractionBits = 54;
 
 // Not in ISO C++17: the 113-bit mantissa keeps a small variance under a large mean from cancelling away.
-__extension__ typedef __float128 Float128;
+__extension__ typedef __float128 Float128;  // NOLINT(modernize-use-using)
 
 /// The exponent e of scale = 2^e, or std::invalid_argument.
 int exponent_of(double scale) {

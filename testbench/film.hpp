@@ -76,7 +76,7 @@ class Film {
 
  private:
   // ISO C++17 has no 128-bit integer; __extension__ keeps -Wpedantic quiet about the compiler's own.
-  __extension__ typedef unsigned __int128 UInt128;
+  __extension__ typedef unsigned __int128 UInt128;  // NOLINT(modernize-use-using)
 
   struct Pixel {
     UInt128 sum[3] = {0, 0, 0};

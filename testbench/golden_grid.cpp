@@ -73,7 +73,7 @@ class GridReader {
   }
   std::vector<std::string> list_of(const toml::table& table, const char* key,
                                    const std::set<std::string>& allowed) const {
-    const std::vector<std::string> values = list<std::string>(table, key);
+    std::vector<std::string> values = list<std::string>(table, key);
     for (const std::string& value : values)
       if (allowed.count(value) == 0) {
         std::string names;

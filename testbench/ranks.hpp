@@ -18,7 +18,7 @@ class Ranks {
   /// Joins the others. Once a process. Throws InputError when several were started and this build has no MPI.
   Ranks();
   /// Leaves; waits for all others to do so.
-  ~Ranks();
+  ~Ranks();  // NOLINT(performance-trivially-destructible): with MPI it does something
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
 

@@ -29,7 +29,7 @@ struct Roofline {
   /// Where the nearest roof would stop the same program if nothing else held it up.
   double attainable_flops_per_second() const;
   /// Operations for each byte through that roof; 0 when no byte went through.
-  double intensity(std::string_view roof) const;
+  double intensity(std::string_view name) const;
 };
 
 /// Of the time from the firmware's start to its end. Peaks from the chip's parameters:

@@ -108,7 +108,7 @@ Json read_statistics(const std::string& path) {
 }
 
 Json parse_statistics(const std::string& text, const std::string& origin) {
-  const Json json = Json::parse(text, nullptr, false);
+  Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
     throw InputError(origin + ": not a whole JSON object; allowed is a statistics file");
   const std::string format = has(json, "format") ? value_of(json["format"]) : "no format";

@@ -32,7 +32,7 @@ bool is_wait(model::CycleCause cause) {
 }  // namespace
 
 Timeline::Timeline(const std::filesystem::path& file, const model::Csx600& chip) : chip_(chip), file_(file) {
-  buffer_ = "{\"displayTimeUnit\":\"ns\",\"otherData\":" +
+  buffer_ = R"({"displayTimeUnit":"ns","otherData":)" +
             Json{{"chip", chip.config().preset}, {"clock_hz", chip.config().chip.clock_hz}}.dump() +
             ",\"traceEvents\":[\n";
   name_tracks();

@@ -15,8 +15,8 @@ class RefillStage : public TreeStage {
   RefillStage(const StageContext& context, TreeContext& tree);
 
   const char* bin() const override { return "traversal"; }
-  void load(std::uint64_t step, int group) override;
-  void process(std::uint64_t step, int group) override;
+  void load(std::uint64_t step, int index) override;
+  void process(std::uint64_t step, int index) override;
   void save(std::uint64_t step, int /*group*/) override { save_hits(step); }
 
   int groups() const { return static_cast<int>(groups_.size()); }
@@ -44,7 +44,7 @@ class RefillTraversal : public TreeTraversal {
   RefillTraversal(const StageContext& context, TreeContext& tree)
       : TreeTraversal(context, tree), queue_(*context.queue), stage_(context, tree) {}
 
-  void after_step(const Stage& stage, int block, const Plan& plan) override;
+  void after_step(const Stage& stage, int group, const Plan& plan) override;
   bool has(const Stage& stage) const override { return &stage == &stage_; }
 
  protected:

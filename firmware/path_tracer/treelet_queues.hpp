@@ -55,12 +55,12 @@ class TreeletQueues {
   /// Of several the one of the treelet that comes first.
   std::optional<int> take_fullest();
   /// It was loaded.
-  void release(int block);
+  void release(int index);
 
  private:
   int room_in(std::int32_t treelet) const;
   int free_block(std::int32_t treelet);
-  void fill(int block, int rays, std::uint64_t step);
+  void fill(int index, int rays, std::uint64_t step);
 
   cn::MonoAddress first_;
   int record_bytes_;

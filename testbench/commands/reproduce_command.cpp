@@ -113,8 +113,7 @@ Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
   json["chip_preset"] = options.chip.preset;
   json["samples"] = options.work.samples;
   json["cells"] = Json::array();
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Cell& cell = cells[i];
+  for (const Cell& cell : cells) {
     const PaperRow& row = paper_rows()[cell.of.row];
     json["cells"].push_back({{"table", row.table},
                              {"row", row.label},

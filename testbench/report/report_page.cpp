@@ -31,7 +31,7 @@ std::string read_file(const fs::path& path, const char* allowed) {
 Json parse(const fs::path& path) {
   const std::string text =
       read_file(path, "a statistics file of `csx600 render --stats` or a directory of `csx600 sweep`");
-  const Json json = Json::parse(text, nullptr, false);
+  Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
     throw InputError(path.string() +
                      ": found no JSON object; allowed: a file of `csx600 render --stats` or "

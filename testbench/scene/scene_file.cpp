@@ -176,8 +176,7 @@ constexpr const char* kSceneFiles = "a directory that holds scene.toml, or a .to
 
 std::filesystem::path scene_path(const std::filesystem::path& scene) {
   std::error_code error;
-  const std::filesystem::path file =
-      std::filesystem::is_directory(scene, error) ? scene / "scene.toml" : scene;
+  std::filesystem::path file = std::filesystem::is_directory(scene, error) ? scene / "scene.toml" : scene;
   if (!std::filesystem::is_regular_file(file, error)) {
     fail(scene.string(), "scene", "no file " + file.string(), kSceneFiles);
   }

@@ -6,7 +6,7 @@
 
 namespace testbench {
 
-/// Loads a scene. `scene` is a directory that holds a scene.toml, or a .toml file itself, or a .gltf or .glb
+/// Loads a scene. `path` is a directory that holds a scene.toml, or a .toml file itself, or a .gltf or .glb
 /// file with a camera (its picture is 480 pixels high). A scene.toml:
 ///
 ///     [camera]                               optional when a mesh file holds one
@@ -21,6 +21,6 @@ namespace testbench {
 ///
 /// Throws InputError (one line: file, line, key, what was found, what is allowed), also for a scene without a
 /// light.
-Scene load_scene(const std::filesystem::path& scene);
+Scene load_scene(const std::filesystem::path& path);
 
 }  // namespace testbench

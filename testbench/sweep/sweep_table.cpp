@@ -31,7 +31,10 @@ void add_numbers(const Json& json, const std::string& path, Json& results) {
     const std::string name = json.is_array() && value.is_object() && value.contains("name")
                                  ? value["name"].get<std::string>()
                                  : std::string(key);
-    add_numbers(value, path.empty() ? name : path + "." + name, results);
+    std::string path_of_value = path;
+    if (!path.empty()) path_of_value += '.';
+    path_of_value += name;
+    add_numbers(value, path_of_value, results);
   }
 }
 
@@ -84,7 +87,7 @@ Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
 /// RFC 4180.
 std::string field(const Json& value) {
   if (!value.is_string()) return value.dump();
-  const std::string text = value.get<std::string>();
+  std::string text = value.get<std::string>();
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);

@@ -7,6 +7,7 @@
 
 #include "firmware/path_tracer/kernels.hpp"
 #include "firmware/path_tracer/path_tracer.hpp"
+#include "testbench/error.hpp"
 #include "testbench/native_machine.hpp"
 
 namespace testbench {
@@ -69,8 +70,8 @@ double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
 }
 
 /// Of a PE's SRAM, beside everything else; below 0 if that does not fit. Where resident nodes are as many as
-/// fit, one is counted.
-int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) {
+/// fit, one is counted. Throws InputError for a program that the firmware refuses.
+int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) try {
   ProgramConfig least = program;
   if (least.tree.resident_nodes == kAsManyAsFit) least.tree.resident_nodes = 1;
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
@@ -79,6 +80,10 @@ int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) {
   const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least,
                                       layout, {});
   return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
+} catch (const cn::PolyMemoryOverflow&) {
+  return -1;  // not even with plenty
+} catch (const path_tracer::ProgramError& error) {
+  throw InputError(error.what());
 }
 
 /// Triangles from which eight children a node cost less than four. Packets never go round: four are best.

@@ -94,6 +94,20 @@ TEST_F(CommandLineErrors, Firmware) {
   expect_render_error({"--roulette-start", "-3"}, {"roulette", "-3"});
 }
 
+TEST_F(CommandLineErrors, Tree) {
+  const auto expect_tree_error = [&](Words arguments, const Words& parts) {
+    arguments.insert(arguments.end(), {"--traversal", "refill"});
+    expect_render_error(arguments, parts);
+  };
+  expect_tree_error({"--node-width", "3"}, {"--node-width", "3", "2,4,8"});
+  expect_tree_error({"--node-width", "2", "--node-format", "quantised8"}, {"found 2", "4 or 8"});
+  expect_tree_error({"--stack-entries", "3"}, {"short stack", "found 3", "power of two"});
+  expect_tree_error({"--visits", "-1"}, {"visits", "found -1", "0 to 1024"});
+  expect_tree_error({"--leaf-triangles", "9"}, {"triangles a leaf", "found 9", "1 to 8"});
+  expect_tree_error({"--treelet-nodes", "0"}, {"nodes a treelet", "found 0", "1 to 1024"});
+  expect_tree_error({"--n", "9"}, {"n: found 9", "0 to 8"});
+}
+
 TEST_F(CommandLineErrors, Chip) {
   expect_render_error({"--chip", "csx601"}, {"'csx601'", "csx600,", "paper", ".toml"});
   expect_render_error({"--chip", "none.toml"}, {"none.toml"});

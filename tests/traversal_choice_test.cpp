@@ -130,6 +130,14 @@ TEST(TreeThatFits, LeavesWishesAlone) {
   EXPECT_EQ(fitted(program).tree.treelet_nodes, program.tree.treelet_nodes);
 }
 
+TEST(TreeThatFits, IsTheOneWishedForEvenIfItIsFarTooLarge) {
+  ProgramConfig program;
+  program.traversal = Traversal::refill;
+  program.n = 8;
+  EXPECT_EQ(fitted(program, {path_tracer::kMaxTreeletNodes}).tree.treelet_nodes,
+            path_tracer::kMaxTreeletNodes);
+}
+
 TEST(TreeThatFits, HasWideNodesWhereTrianglesAreMany) {
   constexpr std::size_t kMany = 1000000;
   ProgramConfig program;

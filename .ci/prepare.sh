@@ -1,4 +1,4 @@
-# Sourced by demo.sh and test.sh, from the project's root.
+# Sourced by demo.sh, test.sh and .ci/style, from the project's root.
 
 # Debian 12 packages; each is said where it is used in the CMake files.
 packages=(

@@ -159,16 +159,19 @@ TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeS
               " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
 }
 
+path_tracer::TreeShape wished_tree(const path_tracer::TreeShape& tree, const TreeWishes& wishes) {
+  return suited_tree(wishes.node_width.value_or(tree.layout.width), tree, wishes);
+}
+
 path_tracer::TreeShape tree_that_fits(std::size_t triangles, const ProgramConfig& program,
                                       const model::ChipConfig& chip, const TreeWishes& wishes) {
   const auto wide = wide_from(program.traversal);
-  const int narrow = wishes.node_width.value_or(program.tree.layout.width);
   ProgramConfig suited = program;
   if (!wishes.node_width && wide && triangles >= *wide) {
     suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program.tree, wishes);
     if (const auto fitting = shrunk_to_fit(suited, chip, wishes)) return *fitting;
   }
-  suited.tree = suited_tree(narrow, program.tree, wishes);
+  suited.tree = wished_tree(program.tree, wishes);
   return shrunk_to_fit(suited, chip, wishes).value_or(suited.tree);
 }
 

@@ -39,6 +39,9 @@ struct TreeWishes {
   std::optional<int> visits = {};
 };
 
+/// `tree` with the wishes, and what suits their width.
+path_tracer::TreeShape wished_tree(const path_tracer::TreeShape& tree, const TreeWishes& wishes);
+
 /// The program's tree with what suits its way through so many triangles, as sweeps/node_width.toml measured
 /// it, but for the wishes. Wide nodes: rays of many triangles go round less often, and to go round is what
 /// costs most. Where that does not fit a PE's SRAM beside everything else, a shorter stack, then smaller

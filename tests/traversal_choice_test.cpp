@@ -130,6 +130,16 @@ TEST(TreeThatFits, LeavesWishesAlone) {
   EXPECT_EQ(fitted(program).tree.treelet_nodes, program.tree.treelet_nodes);
 }
 
+/// What the user asks for is weighed, too, when a way is chosen.
+TEST(TreeWishes, ChangeTheEstimate) {
+  const path_tracer::TreeShape tree;
+  const path_tracer::TreeShape large = testbench::wished_tree(tree, {16});
+  EXPECT_EQ(large.treelet_nodes, 16);
+  EXPECT_EQ(testbench::wished_tree(tree, {}).treelet_nodes, tree.treelet_nodes);
+  EXPECT_GT(testbench::estimate_traversal(1000000, large, kChip).tree,
+            testbench::estimate_traversal(1000000, tree, kChip).tree);
+}
+
 TEST(TreeThatFits, IsTheOneWishedForEvenIfItIsFarTooLarge) {
   ProgramConfig program;
   program.traversal = Traversal::refill;

@@ -181,6 +181,7 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
 
 std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig& chip,
                                     path_tracer::ProgramConfig& program) const {
+  program.tree = wished_tree(program.tree, wishes_);
   const TraversalChoice choice = choose_traversal(scene.triangles.size(), program.tree, chip);
   program.traversal = chosen_.value_or(choice.traversal);
   if (program.uses_tree()) program.tree = tree_that_fits(scene.triangles.size(), program, chip, wishes_);

@@ -186,7 +186,8 @@ void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
 
 void ControlUnit::start_transfer(const cn::Transfer& transfer) {
   if (!timed_) {
-    mono_window_.check(transfer, 0);
+    mono_window_.check_span(transfer, 0);
+    mono_window_.check_places(transfer, 0);
     mono_window_.move(transfer, *mono_socket.operator->());
     return;
   }

@@ -61,20 +61,21 @@ Cycles DmaEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
     signal(transfer.done, now);
     return now;
   }
-  mono_.check(transfer, next_id_);
+  mono_.check_span(transfer, next_id_);
   Cycles accepted = now;
   while (queue_.full(transfer.direction)) accepted = std::max(accepted, make_room());
   statistics_.blocked_cycles += accepted - now;
 
   const int slot = free_slots_.back();
-  free_slots_.pop_back();
   Request& request = requests_[std::size_t(slot)];
+  request.addresses.pieces.describe(transfer, poly_.num_pes(), rules_);
+  if (!request.addresses.pieces.within(mono_.size_bytes())) mono_.check_places(transfer, next_id_);
+  free_slots_.pop_back();
   request.id = next_id_++;
   request.poly = transfer.poly;
   request.done = transfer.done;
   request.label = transfer.label;
   if (observer_ != nullptr) request.enabled = transfer.enabled;
-  request.addresses.pieces.describe(transfer, poly_.num_pes(), rules_);
   cn::Transfer of_copied_addresses = transfer;  // a scatter may overwrite a table of addresses
   of_copied_addresses.mono = request.addresses.pieces.places();
   if (!leaves_data_) mono_.move(of_copied_addresses, *mono_socket.operator->());

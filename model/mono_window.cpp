@@ -16,6 +16,12 @@ std::string hexadecimal(std::uint64_t value) {
   return digits;
 }
 
+std::string name_of(const cn::Transfer& transfer, std::uint64_t request) {
+  return "PIO request " + std::to_string(request) + " (" +
+         (transfer.direction == cn::Direction::mono_to_poly ? "mono to poly" : "poly to mono") +
+         ", semaphore " + std::to_string(transfer.done.index) + "): ";
+}
+
 }  // namespace
 
 MonoWindow::MonoWindow(std::uint64_t size_bytes, cn::PolyMemory& poly)
@@ -23,49 +29,25 @@ MonoWindow::MonoWindow(std::uint64_t size_bytes, cn::PolyMemory& poly)
       poly_(poly),
       piece_(std::size_t(poly.capacity_bytes() + cn::PolyMemory::kReservedBytes)) {}
 
-void MonoWindow::check(const cn::Transfer& transfer, std::uint64_t request) const {
-  const auto name = [&] {
-    return "PIO request " + std::to_string(request) + " (" +
-           (transfer.direction == cn::Direction::mono_to_poly ? "mono to poly" : "poly to mono") +
-           ", semaphore " + std::to_string(transfer.done.index) + "): ";
-  };
+void MonoWindow::check_span(const cn::Transfer& transfer, std::uint64_t request) const {
   const auto sram_bytes = static_cast<int>(piece_.size());
   const cn::PolySpan& poly = transfer.poly;
   if (poly.size_bytes < 0 || poly.size_bytes > sram_bytes || poly.offset_bytes < 0 ||
       poly.offset_bytes > sram_bytes - poly.size_bytes)
-    throw cn::MachineFault(name() + std::to_string(poly.size_bytes) + " bytes at poly offset " +
-                           std::to_string(poly.offset_bytes) + ", a PE's SRAM is 0 to " +
-                           std::to_string(sram_bytes - 1));
-  if (within(transfer)) return;
-  const auto bytes = std::uint64_t(poly.size_bytes);
-  for (int pe = 0; pe < poly_.num_pes(); ++pe) {
-    const cn::MonoAddress address = transfer.mono[pe];
-    if (!transfer.enabled[pe] || (address <= size_bytes_ && bytes <= size_bytes_ - address)) continue;
-    throw cn::MachineFault(name() + "PE " + std::to_string(pe) + " addresses " + std::to_string(bytes) +
-                           " bytes at " + hexadecimal(address) + ", mono memory is 0x0 to " +
-                           hexadecimal(size_bytes_ - 1));
-  }
+    throw cn::MachineFault(name_of(transfer, request) + std::to_string(poly.size_bytes) +
+                           " bytes at poly offset " + std::to_string(poly.offset_bytes) +
+                           ", a PE's SRAM is 0 to " + std::to_string(sram_bytes - 1));
 }
 
-bool MonoWindow::within(const cn::Transfer& transfer) const {
+void MonoWindow::check_places(const cn::Transfer& transfer, std::uint64_t request) const {
   const auto bytes = std::uint64_t(transfer.poly.size_bytes);
-  if (bytes > size_bytes_) return false;
-  const std::uint64_t highest = size_bytes_ - bytes;
-  if (transfer.mono.by_pe == nullptr) {
-    // Cannot overflow: at most kMaxPes strides of at most the memory's size. Disabled PEs are judged too; a
-    // caller that is told false looks closer.
-    const std::uint64_t stride = transfer.mono.stride_bytes;
-    return transfer.mono.first <= highest && stride <= size_bytes_ &&
-           transfer.mono.first + std::uint64_t(poly_.num_pes() - 1) * stride <= highest;
-  }
-  if (cn::bits_of_places(transfer, poly_.num_pes()) <= highest) return true;
-  bool all = true;
-  for (int first_pe = 0; first_pe < poly_.num_pes(); first_pe += cn::kStripLanes) {
-    const unsigned bits = transfer.enabled.strip_bits(first_pe / cn::kStripLanes);
-    for (int lane = 0; lane < cn::kStripLanes; ++lane)
-      all &= (((bits >> lane) & 1u) == 0) | (transfer.mono[first_pe + lane] <= highest);
-  }
-  return all;
+  const int pe = cn::first_pe_not(transfer, poly_.num_pes(), [&](cn::MonoAddress address) {
+    return address <= size_bytes_ && bytes <= size_bytes_ - address;
+  });
+  if (pe < 0) return;
+  throw cn::MachineFault(name_of(transfer, request) + "PE " + std::to_string(pe) + " addresses " +
+                         std::to_string(bytes) + " bytes at " + hexadecimal(transfer.mono[pe]) +
+                         ", mono memory is 0x0 to " + hexadecimal(size_bytes_ - 1));
 }
 
 void MonoWindow::move(const cn::Transfer& transfer, tlm::tlm_fw_transport_if<>& memory) {

@@ -16,9 +16,11 @@ class MonoWindow {
  public:
   MonoWindow(std::uint64_t size_bytes, cn::PolyMemory& poly);
 
-  /// Throws cn::MachineFault naming `request`, the PE, its address and the allowed range; likewise for the
-  /// SRAM.
-  void check(const cn::Transfer& transfer, std::uint64_t request) const;
+  /// These throw cn::MachineFault naming `request` and the allowed range; of places the first PE's that is
+  /// outside, too, which takes longer than to know that none is (MonoPieces::within).
+  void check_span(const cn::Transfer& transfer, std::uint64_t request) const;
+  void check_places(const cn::Transfer& transfer, std::uint64_t request) const;
+  std::uint64_t size_bytes() const { return size_bytes_; }
   /// Of a transfer that was checked.
   void move(const cn::Transfer& transfer, tlm::tlm_fw_transport_if<>& memory);
   /// The bytes that are at `address` now.
@@ -35,7 +37,6 @@ class MonoWindow {
   enum class Pointer : std::uint8_t { not_asked, granted, refused };
 
   void check_range(cn::MonoAddress address, std::uint64_t bytes) const;
-  bool within(const cn::Transfer& transfer) const;
   bool has_pointer(tlm::tlm_fw_transport_if<>& memory);
   void move_by_debug(const cn::Transfer& transfer, tlm::tlm_fw_transport_if<>& memory);
   void debug(tlm::tlm_command command, cn::MonoAddress address, std::uint8_t* data, std::uint64_t bytes,

@@ -187,9 +187,13 @@ void put(MonoImage& image, cn::MonoPointer<Record> to, const Record* records, st
 }
 
 TreeImage make_tree(const Scene& scene, double reach, const path_tracer::ProgramConfig& config) {
+  const double unit = path_tracer::to_node_unit(config.tree.layout.format, reach);
   std::vector<Box> boxes;
   boxes.reserve(scene.triangles.size());
-  for (const Triangle& triangle : scene.triangles) boxes.push_back(padded_box(triangle, reach));
+  for (const Triangle& triangle : scene.triangles) {
+    const Box box = padded_box(triangle, reach);
+    boxes.push_back({box.lower * unit, box.upper * unit});
+  }
   return make_tree_image(boxes, config.tree);
 }
 

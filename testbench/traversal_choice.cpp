@@ -86,19 +86,40 @@ int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) try 
   throw InputError(error.what());
 }
 
-/// Triangles from which eight children a node cost less than four. Packets never go round: four are best.
-std::optional<std::size_t> wide_from(Traversal traversal) {
-  if (traversal == Traversal::packets) return {};
-  return traversal == Traversal::temporary_bin || traversal == Traversal::shared_treelets ? 5000 : 50000;
+/// Whether eight children a node cost less than four. Packets never go round: four are best.
+bool suits_wide_nodes(Traversal traversal, std::size_t triangles) {
+  return traversal != Traversal::packets && triangles >= 5000;
 }
 
-path_tracer::TreeShape suited_tree(int width, const path_tracer::TreeShape& of, const TreeWishes& wishes) {
+/// Rays that wait for I/O do best with the fewest bytes, those that wait for kernels with what is decoded
+/// soonest.
+path_tracer::NodeFormat suited_format(Traversal traversal, int width) {
+  const bool waits_for_kernels = traversal == Traversal::lock_step || traversal == Traversal::packets;
+  const path_tracer::NodeLayout quantised{path_tracer::NodeFormat::quantised8, width};
+  return waits_for_kernels || !quantised.has_kernel() ? path_tracer::NodeFormat::fp32 : quantised.format;
+}
+
+/// The more the faster a node is visited, and the more to go round once more costs.
+int suited_visits(Traversal traversal, const path_tracer::NodeLayout& layout) {
+  const bool is_fast = layout.format == path_tracer::NodeFormat::fp32;
+  switch (traversal) {
+    case Traversal::lock_step:
+      return layout.width == 2 ? 3 : 2;
+    case Traversal::refill:
+      return layout.width == 8 ? (is_fast ? 3 : 2) : (is_fast || layout.width == 2 ? 6 : 3);
+    default:
+      return layout.width == 8 ? 3 : layout.width == 4 ? 6 : 8;
+  }
+}
+
+path_tracer::TreeShape suited_tree(int width, const ProgramConfig& of, const TreeWishes& wishes) {
   constexpr int kTreeletChildren = 8;
-  path_tracer::TreeShape tree = of;
+  path_tracer::TreeShape tree = of.tree;
   tree.layout.width = width;
+  tree.layout.format = wishes.node_format.value_or(suited_format(of.traversal, width));
   tree.treelet_nodes = wishes.treelet_nodes.value_or(kTreeletChildren / width);
   tree.stack_entries = wishes.stack_entries.value_or(tree.stack_entries);
-  tree.visits = wishes.visits.value_or(width == 2 ? 6 : width == 8 ? 3 : tree.visits);
+  tree.visits = wishes.visits.value_or(suited_visits(of.traversal, tree.layout));
   return tree;
 }
 
@@ -159,19 +180,18 @@ TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeS
               " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
 }
 
-path_tracer::TreeShape wished_tree(const path_tracer::TreeShape& tree, const TreeWishes& wishes) {
-  return suited_tree(wishes.node_width.value_or(tree.layout.width), tree, wishes);
+path_tracer::TreeShape wished_tree(const ProgramConfig& program, const TreeWishes& wishes) {
+  return suited_tree(wishes.node_width.value_or(program.tree.layout.width), program, wishes);
 }
 
 path_tracer::TreeShape tree_that_fits(std::size_t triangles, const ProgramConfig& program,
                                       const model::ChipConfig& chip, const TreeWishes& wishes) {
-  const auto wide = wide_from(program.traversal);
   ProgramConfig suited = program;
-  if (!wishes.node_width && wide && triangles >= *wide) {
-    suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program.tree, wishes);
+  if (!wishes.node_width && suits_wide_nodes(program.traversal, triangles)) {
+    suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program, wishes);
     if (const auto fitting = shrunk_to_fit(suited, chip, wishes)) return *fitting;
   }
-  suited.tree = wished_tree(program.tree, wishes);
+  suited.tree = wished_tree(program, wishes);
   return shrunk_to_fit(suited, chip, wishes).value_or(suited.tree);
 }
 

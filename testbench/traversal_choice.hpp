@@ -37,16 +37,18 @@ struct TreeWishes {
   std::optional<int> stack_entries = {};
   std::optional<int> node_width = {};
   std::optional<int> visits = {};
+  std::optional<path_tracer::NodeFormat> node_format = {};
 };
 
-/// `tree` with the wishes, and what suits their width.
-path_tracer::TreeShape wished_tree(const path_tracer::TreeShape& tree, const TreeWishes& wishes);
+/// The program's tree with the wishes, and what suits its way and their width.
+path_tracer::TreeShape wished_tree(const path_tracer::ProgramConfig& program, const TreeWishes& wishes);
 
-/// The program's tree with what suits its way through so many triangles, as sweeps/node_width.toml measured
-/// it, but for the wishes. Wide nodes: rays of many triangles go round less often, and to go round is what
-/// costs most. Where that does not fit a PE's SRAM beside everything else, a shorter stack, then smaller
-/// treelets, then narrower nodes, as far as none was wished for; when that does not help, what was wished
-/// for. Of resident nodes, if they are as many as fit, one counts.
+/// The program's tree with what suits its way through so many triangles, as sweeps/node_width.toml and
+/// node_format.toml measured it, but for the wishes. Wide nodes: rays of many triangles go round less often,
+/// and to go round is what costs most. Quantised ones where I/O is what a ray waits for. Where that does not
+/// fit a PE's SRAM beside everything else, a shorter stack, then smaller treelets, then narrower nodes, as
+/// far as none was wished for; when that does not help, what was wished for. Of resident nodes, if they are
+/// as many as fit, one counts.
 path_tracer::TreeShape tree_that_fits(std::size_t triangles, const path_tracer::ProgramConfig& program,
                                       const model::ChipConfig& chip, const TreeWishes& wishes);
 

@@ -163,24 +163,4 @@ TEST_F(CnIndexed, TheHighestBitIsThatOfTheWholePart) {
   }
 }
 
-float float_of(std::uint32_t bits) {
-  float value;
-  std::memcpy(&value, &bits, sizeof(value));
-  return value;
-}
-
-TEST_F(CnIndexed, FloatsAreWidenedExactly) {
-  PerPe<std::uint32_t> bits{0x00000000u, 0x80000000u, 0x00000001u, 0x807fffffu, 0x00800000u, 0x3f800000u,
-                            0xbf800001u, 0x7f7fffffu, 0x7f800000u, 0xff800000u, 0x7fc00000u};
-  const std::size_t chosen = bits.size();
-  for (int round = 0; round < 200; ++round) {
-    bits.resize(round == 0 ? chosen : 0);
-    while (bits.size() < kPes) bits.push_back(static_cast<std::uint32_t>(random_()));
-    PerPe<double> found = per_pe<double>();
-    run([&] { store(found, cn::widen_float(load(bits))); });
-    for (std::size_t pe = 0; pe < kPes; ++pe)
-      ASSERT_TRUE(same(found[pe], static_cast<double>(float_of(bits[pe])))) << std::hex << bits[pe];
-  }
-}
-
 }  // namespace

@@ -39,6 +39,7 @@ TEST_P(MonoNodes, AreWhatTheHostDecodes) {
   const NodeLayout layout = GetParam();
   const auto node_bytes = std::size_t(layout.node_bytes());
   constexpr int kNodes = 500;
+  constexpr double kUnit = 0.25;
   testbench::NativeMachine machine(8, 1024, kNodes * node_bytes);
   std::mt19937_64 random(3);
   for (int slot = 0; slot < kNodes; ++slot) {
@@ -46,15 +47,15 @@ TEST_P(MonoNodes, AreWhatTheHostDecodes) {
     encode_node(random_node(random, children), layout, {}, machine.mono() + std::size_t(slot) * node_bytes);
   }
   for (int slot = 0; slot < kNodes; ++slot) {
-    const auto node = read_node(machine, {0}, layout, slot);
+    const auto node = path_tracer::read_node(machine, {{0}, layout, kUnit}, slot);
     const std::uint8_t* const encoded = machine.mono() + std::size_t(slot) * node_bytes;
     ASSERT_EQ(node.children, slot % (layout.width + 1));
     for (int child = 0; child < node.children; ++child) {
       const Box box = decode_box(encoded, layout, child);
       for (int axis = 0; axis < 3; ++axis) {
         const auto& four = node.four[child / 4];
-        EXPECT_EQ(four.lower[axis][std::size_t(child % 4)], box.lower[axis]);
-        EXPECT_EQ(four.upper[axis][std::size_t(child % 4)], box.upper[axis]);
+        EXPECT_EQ(four.lower[axis][std::size_t(child % 4)], kUnit * box.lower[axis]);
+        EXPECT_EQ(four.upper[axis][std::size_t(child % 4)], kUnit * box.upper[axis]);
       }
       const auto expected = decode_reference(encoded, layout, child);
       const auto found = path_tracer::PackedReference::unpack(node.reference[child]);

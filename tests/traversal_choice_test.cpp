@@ -100,7 +100,11 @@ TEST(TreeThatFits, HasAShorterStackThenSmallerTreelets) {
   program.traversal = Traversal::temporary_bin;
   program.tree.resident_nodes = 1;
   program.n = 2;
-  const ProgramConfig shorter = fitted(program, {4, {}});  // treelets of four as they are
+  testbench::TreeWishes floats;
+  floats.node_format = path_tracer::NodeFormat::fp32;
+  testbench::TreeWishes treelets_of_four = floats;
+  treelets_of_four.treelet_nodes = 4;
+  const ProgramConfig shorter = fitted(program, treelets_of_four);
   EXPECT_EQ(shorter.tree.treelet_nodes, 4);
   EXPECT_LT(shorter.tree.stack_entries, program.tree.stack_entries);
   EXPECT_TRUE(fits(shorter));
@@ -110,7 +114,7 @@ TEST(TreeThatFits, HasAShorterStackThenSmallerTreelets) {
 
   program.n = 3;  // ten records of a ray
   ASSERT_FALSE(fits(program));
-  const ProgramConfig smaller = fitted(program);
+  const ProgramConfig smaller = fitted(program, floats);
   EXPECT_TRUE(fits(smaller));
   EXPECT_EQ(smaller.tree.treelet_nodes, 1);
   EXPECT_GE(smaller.tree.stack_entries, 1);
@@ -132,10 +136,11 @@ TEST(TreeThatFits, LeavesWishesAlone) {
 
 /// What the user asks for is weighed, too, when a way is chosen.
 TEST(TreeWishes, ChangeTheEstimate) {
-  const path_tracer::TreeShape tree;
-  const path_tracer::TreeShape large = testbench::wished_tree(tree, {16});
+  const ProgramConfig program;
+  const path_tracer::TreeShape& tree = program.tree;
+  const path_tracer::TreeShape large = testbench::wished_tree(program, {16});
   EXPECT_EQ(large.treelet_nodes, 16);
-  EXPECT_EQ(testbench::wished_tree(tree, {}).treelet_nodes, tree.treelet_nodes);
+  EXPECT_EQ(testbench::wished_tree(program, {}).treelet_nodes, tree.treelet_nodes);
   EXPECT_GT(testbench::estimate_traversal(1000000, large, kChip).tree,
             testbench::estimate_traversal(1000000, tree, kChip).tree);
 }
@@ -163,12 +168,27 @@ TEST(TreeThatFits, HasWideNodesWhereTrianglesAreMany) {
   EXPECT_EQ(fitted(program, {}, kMany).tree.layout.width, 4);
 }
 
+TEST(TreeThatFits, HasTheFormatThatSuitsTheWayOrIsWishedFor) {
+  using path_tracer::NodeFormat;
+  ProgramConfig program;
+  const auto format = [&](Traversal traversal, const testbench::TreeWishes& wishes) {
+    program.traversal = traversal;
+    return fitted(program, wishes, 1000000).tree.layout.format;
+  };
+  EXPECT_EQ(format(Traversal::refill, {}), NodeFormat::quantised8);
+  EXPECT_EQ(format(Traversal::temporary_bin, {}), NodeFormat::quantised8);
+  EXPECT_EQ(format(Traversal::lock_step, {}), NodeFormat::fp32);
+  EXPECT_EQ(format(Traversal::packets, {}), NodeFormat::fp32);
+  EXPECT_EQ(format(Traversal::refill, {{}, {}, 2}), NodeFormat::fp32) << "quantised nodes have four or more";
+  EXPECT_EQ(format(Traversal::refill, {{}, {}, {}, {}, NodeFormat::fp64}), NodeFormat::fp64);
+}
+
 TEST(TreeThatFits, HasNarrowNodesWhereWideOnesDoNotFit) {
   ProgramConfig program;
   program.traversal = Traversal::temporary_bin;
   program.n = 3;
   program.tree.resident_nodes = 1;
-  const ProgramConfig narrow = fitted(program, {}, 1000000);
+  const ProgramConfig narrow = fitted(program, {{}, {}, {}, {}, path_tracer::NodeFormat::fp32}, 1000000);
   EXPECT_EQ(narrow.tree.layout.width, 4);
   EXPECT_TRUE(fits(narrow));
 }

@@ -35,8 +35,9 @@ class TreeImageOf : public testing::TestWithParam<test_support::Mesh> {};
 
 /// From slot 0 every triangle is met once, in a box that contains its own, within the levels that are told.
 TEST_P(TreeImageOf, LeadsToEveryTriangleInsideItsBoxes) {
-  const std::vector<Box> boxes = boxes_of(test_support::mesh(GetParam()));
   for (const path_tracer::NodeLayout& layout : test_support::node_layouts()) {
+    const std::vector<Box> boxes =
+        boxes_of(test_support::in_nodes_unit(test_support::mesh(GetParam()), layout.format));
     const TreeShape shape{layout, 5, 3, 2, 8};
     const TreeImage image = make_tree_image(boxes, shape);
     const int node_bytes = shape.layout.node_bytes();

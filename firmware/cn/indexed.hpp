@@ -159,24 +159,4 @@ inline poly<std::int32_t> highest_bit(const poly<std::uint32_t>& a) {
       each_chunk<std::uint64_t>([&](int i) { return (bits.lanes().chunk[i] >> 52) - 1023; })));
 }
 
-/// A float by its bits, as a double.
-inline poly<double> widen_float(const poly<std::uint32_t>& bits) {
-  issue(InstructionClass::convert);
-  return poly<double>(each_chunk<double>([&](int i) {
-    using Chunk = Lanes<double>::Chunk;
-    const auto& words = bits.lanes().chunk[i];
-#if defined(__AVX512F__)
-    // Masked forms: GCC 12 warns of uninitialised values in the headers' plain ones.
-    const __m256i low = _mm512_maskz_cvtepi64_epi32(0xff, __m512i(words));
-    return Chunk(_mm512_maskz_cvtps_pd(0xff, _mm256_castsi256_ps(low)));
-#elif defined(__AVX2__)
-    const __m256i even =
-        _mm256_permutevar8x32_epi32(__m256i(words), _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6));
-    return Chunk(_mm256_cvtps_pd(_mm_castsi128_ps(_mm256_castsi256_si128(even))));
-#else
-    return Chunk(_mm_cvtps_pd(_mm_castsi128_ps(_mm_shuffle_epi32(__m128i(words), 0x08))));
-#endif
-  }));
-}
-
 }  // namespace cn

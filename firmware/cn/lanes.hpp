@@ -24,6 +24,14 @@ inline constexpr std::size_t kNativeBytes = 32;
 inline constexpr std::size_t kNativeBytes = 16;
 #endif
 
+/// Where a lane's value stands among those of its strip. AVX2 narrows and widens vectors half by half, so
+/// that floats in this order become words, or words floats, without crossing halves.
+template <class T>
+constexpr int place_of_lane(int lane) {
+  constexpr bool halves_are_apart = kNativeBytes == 32 && sizeof(T) * kStripLanes == kNativeBytes;
+  return halves_are_apart ? (lane & 1) | (lane & 2) << 1 | (lane & 4) >> 1 : lane;
+}
+
 /// One value a PE for the PEs of a strip, in as many native vectors as that takes. GCC splits vectors wider
 /// than the machine's into scalars at comparisons and selects, hence the chunks.
 template <class T>
@@ -37,11 +45,11 @@ struct Lanes {
 
   T operator[](int lane) const {
     T value;
-    std::memcpy(&value, reinterpret_cast<const char*>(this) + lane * sizeof(T), sizeof(T));
+    std::memcpy(&value, reinterpret_cast<const char*>(this) + place_of_lane<T>(lane) * sizeof(T), sizeof(T));
     return value;
   }
   void set(int lane, T value) {
-    std::memcpy(reinterpret_cast<char*>(this) + lane * sizeof(T), &value, sizeof(T));
+    std::memcpy(reinterpret_cast<char*>(this) + place_of_lane<T>(lane) * sizeof(T), &value, sizeof(T));
   }
 };
 
@@ -99,6 +107,65 @@ inline void store_lanes(void* row, const Lanes<T>& value) {
   auto* const chunks = static_cast<RowChunk*>(row);
   const auto words = bit_cast_lanes<std::uint64_t>(value);
   each_chunk<std::uint64_t>([&](int i) { return chunks[i] = words.chunk[i]; });
+}
+
+/// Half of each 64-bit lane, read as a float.
+enum class WordHalf : std::uint8_t { low, high };
+
+template <WordHalf half>
+inline Lanes<float> halves_of_words(const Lanes<std::uint64_t>& words) {
+  return each_chunk<float>([&](int i) {
+    using Chunk = Lanes<float>::Chunk;
+#if defined(__AVX512F__)
+    const auto wanted = half == WordHalf::low ? words.chunk[i] : words.chunk[i] >> 32;
+    return Chunk(_mm512_maskz_cvtepi64_epi32(0xff, __m512i(wanted)));
+#else
+    constexpr int kOfEachPair = half == WordHalf::low ? 0x88 : 0xdd;
+#if defined(__AVX2__)
+    return Chunk(_mm256_shuffle_ps(__m256(words.chunk[2 * i]), __m256(words.chunk[2 * i + 1]), kOfEachPair));
+#else
+    return Chunk(_mm_shuffle_ps(__m128(words.chunk[2 * i]), __m128(words.chunk[2 * i + 1]), kOfEachPair));
+#endif
+#endif
+  });
+}
+
+/// 64-bit lanes with those halves.
+inline Lanes<std::uint64_t> words_of_halves(const Lanes<float>& low, const Lanes<float>& high) {
+  return each_chunk<std::uint64_t>([&](int i) {
+    using Chunk = Lanes<std::uint64_t>::Chunk;
+#if defined(__AVX512F__)
+    const auto wide = [&](const Lanes<float>& half) {
+      return Chunk(_mm512_maskz_cvtepu32_epi64(0xff, __m256i(half.chunk[i])));
+    };
+    return wide(low) | wide(high) << 32;
+#elif defined(__AVX2__)
+    const __m256 a = __m256(low.chunk[i / 2]);
+    const __m256 b = __m256(high.chunk[i / 2]);
+    return i % 2 == 0 ? Chunk(_mm256_unpacklo_ps(a, b)) : Chunk(_mm256_unpackhi_ps(a, b));
+#else
+    const __m128 a = __m128(low.chunk[i / 2]);
+    const __m128 b = __m128(high.chunk[i / 2]);
+    return i % 2 == 0 ? Chunk(_mm_unpacklo_ps(a, b)) : Chunk(_mm_unpackhi_ps(a, b));
+#endif
+  });
+}
+
+/// To the nearest float.
+inline Lanes<float> narrow_lanes(const Lanes<double>& a) {
+  return each_chunk<float>([&](int i) {
+    using Chunk = Lanes<float>::Chunk;
+#if defined(__AVX512F__)
+    return Chunk(_mm512_maskz_cvtpd_ps(0xff, __m512d(a.chunk[i])));
+#elif defined(__AVX2__)
+    const __m256 in_order = _mm256_set_m128(_mm256_cvtpd_ps(__m256d(a.chunk[2 * i + 1])),
+                                            _mm256_cvtpd_ps(__m256d(a.chunk[2 * i])));
+    return Chunk(_mm256_permute4x64_pd(__m256d(in_order), 0xd8));  // place_of_lane
+#else
+    return Chunk(
+        _mm_movelh_ps(_mm_cvtpd_ps(__m128d(a.chunk[2 * i])), _mm_cvtpd_ps(__m128d(a.chunk[2 * i + 1]))));
+#endif
+  });
 }
 
 /// Products of the low 32 bits of each lane. Spelled out because GCC makes a full 64-bit product of it

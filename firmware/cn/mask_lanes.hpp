@@ -113,13 +113,36 @@ inline MaskLanes compare_integer_chunks(__m512i a, __m512i b) {
 }
 #endif
 
+/// Of lanes of 32 bits as their type compares them.
+template <Comparison comparison, class V>
+inline MaskLanes compare_narrow(const V* a, const V* b) {
+#if defined(__AVX512F__)
+  const auto lanes = compare_values<comparison>(a[0], b[0]);
+  return mask_from_bits(_mm256_movepi32_mask(__m256i(lanes)));
+#else
+  const auto lanes =
+      each_chunk<float>([&](int i) { return Lanes<float>::Chunk(compare_values<comparison>(a[i], b[i])); });
+  return {bit_cast_lanes<std::int64_t>(words_of_halves(lanes, lanes))};
+#endif
+}
+
+inline Lanes<float> select_narrow(const MaskLanes& mask, const Lanes<float>& if_set,
+                                  const Lanes<float>& otherwise) {
+#if defined(__AVX512F__)
+  return {{Lanes<float>::Chunk(_mm256_mask_blend_ps(static_cast<__mmask8>(mask.bits),
+                                                    __m256(otherwise.chunk[0]), __m256(if_set.chunk[0])))}};
+#else
+  const auto narrow = halves_of_words<WordHalf::low>(bit_cast_lanes<std::uint64_t>(mask));
+  using Bits __attribute__((vector_size(sizeof(Lanes<float>::Chunk)))) = std::int32_t;
+  return each_chunk<float>(
+      [&](int i) { return Bits(narrow.chunk[i]) ? if_set.chunk[i] : otherwise.chunk[i]; });
+#endif
+}
+
 template <Comparison comparison, class T>
 inline MaskLanes compare_lanes(const Lanes<T>& a, const Lanes<T>& b) {
-  if constexpr (sizeof(T) != sizeof(std::int64_t)) {
-    std::uint32_t bits = 0;
-    for (int i = 0; i < kStripLanes; ++i)
-      bits |= static_cast<std::uint32_t>(compare_values<comparison>(a[i], b[i])) << i;
-    return mask_from_bits(bits);
+  if constexpr (std::is_same_v<T, float>) {
+    return compare_narrow<comparison>(a.chunk, b.chunk);
   } else {
 #if defined(__AVX512F__)
     if constexpr (std::is_floating_point_v<T>) {
@@ -138,8 +161,8 @@ inline MaskLanes compare_lanes(const Lanes<T>& a, const Lanes<T>& b) {
 
 template <class T>
 inline Lanes<T> select_lanes(const MaskLanes& mask, const Lanes<T>& if_set, const Lanes<T>& otherwise) {
-  if constexpr (sizeof(T) != sizeof(std::int64_t)) {
-    return each_lane<T>([&](int i) { return mask[i] ? if_set[i] : otherwise[i]; });
+  if constexpr (std::is_same_v<T, float>) {
+    return select_narrow(mask, if_set, otherwise);
   } else {
 #if defined(__AVX512F__)
     return each_chunk<T>([&](int i) {

@@ -216,6 +216,8 @@ inline poly<To> convert(const poly<From>& from) {
     const auto biased = bit_cast_lanes<double>(
         each_chunk<std::uint64_t>([&](int i) { return from.lanes().chunk[i] | kTwoTo52Bits; }));
     return poly<double>(each_chunk<double>([&](int i) { return biased.chunk[i] - 0x1p52; }));
+  } else if constexpr (std::is_same_v<To, float> && std::is_same_v<From, double>) {
+    return poly<float>(narrow_lanes(from.lanes()));
   } else {
     // Narrow numbers go through the signed 64-bit format, whose conversion is one instruction at every x86-64
     // level: out of range, too, all levels give the same bits. That of unsigned ones differs between AVX-512

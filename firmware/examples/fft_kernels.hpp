@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/cn/float_bits.hpp"
 #include "firmware/examples/fft.hpp"
 
 namespace examples {
@@ -14,27 +15,14 @@ struct Complex4 {
 
 /// The same registers under other names: the words of a complex number are its parts.
 inline Complex4 to_complex(const Words& words) {
-  const auto part = [&](int element, int shift) {
-    return cn::poly<float>(cn::each_lane<float>([&](int lane) {
-      const auto bits = static_cast<std::uint32_t>(words[element].lanes()[lane] >> shift);
-      float value;
-      std::memcpy(&value, &bits, sizeof(value));
-      return value;
-    }));
-  };
-  return {{part(0, 0), part(1, 0), part(2, 0), part(3, 0)},
-          {part(0, 32), part(1, 32), part(2, 32), part(3, 32)}};
+  return {
+      {cn::low_float(words[0]), cn::low_float(words[1]), cn::low_float(words[2]), cn::low_float(words[3])},
+      {cn::high_float(words[0]), cn::high_float(words[1]), cn::high_float(words[2]),
+       cn::high_float(words[3])}};
 }
 
 inline Words to_words(const Complex4& a) {
-  const auto word = [&](int element) {
-    return cn::poly<std::uint64_t>(cn::each_lane<std::uint64_t>([&](int lane) {
-      const float parts[2] = {a.real[element].lanes()[lane], a.imaginary[element].lanes()[lane]};
-      std::uint64_t bits;
-      std::memcpy(&bits, parts, sizeof(bits));
-      return bits;
-    }));
-  };
+  const auto word = [&](int i) { return cn::join_floats(a.real[i], a.imaginary[i]); };
   return {word(0), word(1), word(2), word(3)};
 }
 

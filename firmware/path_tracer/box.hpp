@@ -25,12 +25,20 @@ inline poly<double> from_origin(const poly<double>& x, const poly<double>& y, co
   return cn::max(poly<double>(0.0), cn::max(cn::max(x, y), z));
 }
 
+/// -1 / component, whose size is taken as no less than `least`.
+inline poly<double> minus_inverse_of(const poly<double>& component, double least) {
+  const poly<double> size = cn::max(cn::abs(component), poly<double>(least));
+  return -1.0 / cn::flip_sign(size, component);
+}
+
 /// A ray as the tests of boxes want it.
 class BoxRay {
  public:
   BoxRay(const Point3& origin, const Direction3& direction)
       : origin_(origin),
-        minus_inverse_{minus_inverse(direction.x), minus_inverse(direction.y), minus_inverse(direction.z)} {}
+        minus_inverse_{minus_inverse_of(direction.x, kLeastComponent),
+                       minus_inverse_of(direction.y, kLeastComponent),
+                       minus_inverse_of(direction.z, kLeastComponent)} {}
 
   const Point3& origin() const { return origin_; }
   /// -1 / direction, finite: (origin - coordinate) times it is the distance of a plane.
@@ -46,10 +54,7 @@ class BoxRay {
 
  private:
   /// A direction's component of 0 is taken as one that no scene's size makes a distance of.
-  static poly<double> minus_inverse(const poly<double>& component) {
-    const poly<double> size = cn::max(cn::abs(component), poly<double>(0x1p-900));
-    return -1.0 / cn::flip_sign(size, component);
-  }
+  static constexpr double kLeastComponent = 0x1p-900;
 
   Point3 origin_;
   Direction3 minus_inverse_;

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 /// How a node of the tree of boxes lies in mono memory and, once loaded, in a PE's SRAM. All children of a
 /// node are in it, so that one load answers which of them a ray meets.
 namespace path_tracer {
+
+inline constexpr int kAxes = 3;
 
 /// Of a child's box. The narrow ones are rounded outwards: a ray that meets the box meets what is stored.
 enum class NodeFormat : std::uint8_t {
@@ -17,9 +22,18 @@ enum class NodeFormat : std::uint8_t {
 };
 inline constexpr int kNodeFormats = 3;
 
+/// Factor of coordinates in nodes, a power of two. In single precision they are in such units that `reach`,
+/// the longest way there is in the scene, is 1 to 2 (below 2^-1000 less): floats then serve scenes of every
+/// size.
+inline double to_node_unit(NodeFormat format, double reach) {
+  const bool in_scenes_unit = format == NodeFormat::fp64 || !(reach > 0) || !std::isfinite(reach);
+  return in_scenes_unit ? 1.0 : std::scalbn(1.0, std::min(-std::ilogb(reach), 1000));
+}
+
 /// A node has 2, 4 or 8 children at most.
-inline constexpr int kNodeWidths = 3;
-inline constexpr int kMaxNodeWidth = 8;
+inline constexpr int kNodeWidth[] = {2, 4, 8};
+inline constexpr std::size_t kNodeWidths = std::size(kNodeWidth);
+inline constexpr int kMaxNodeWidth = kNodeWidth[kNodeWidths - 1];
 
 /// Where a child leads. `count` triangles from `first` on; or the node in slot `first`, when count is 0; or
 /// nowhere.
@@ -50,15 +64,20 @@ struct PackedReference {
   }
 };
 
-/// Of quantised8: coordinate = origin + step * 2^exponent, exact in double precision but for its sum.
+/// Of quantised8: coordinate = origin + step * 2^exponent as floats, the product exact and the sum rounded.
 struct QuantisedFrame {
-  double origin[3];
-  std::int16_t exponent[3];
-  std::int16_t unused;
+  float origin[kAxes];
+  std::uint8_t exponent[kAxes];  ///< as a float has it, 127 above its value: a normal number's
+  std::uint8_t unused;
 };
 
+inline float quantised_coordinate(const QuantisedFrame& frame, int axis, int step) {
+  return frame.origin[axis] + std::ldexp(static_cast<float>(step), frame.exponent[axis] - 127);
+}
+
 /// Byte offsets within a node of `width` children: its boxes first, then width packed references. Boxes lie
-/// component by component (lower x, y, z, upper x, y, z), each of all children side by side.
+/// component by component (lower x, y, z, upper x, y, z), each of all children side by side. The box of a
+/// child that leads nowhere is empty, from infinity to -infinity, or all 0 where steps cannot say that.
 struct NodeLayout {
   NodeFormat format = NodeFormat::fp32;
   int width = 4;
@@ -78,12 +97,16 @@ struct NodeLayout {
   }
   constexpr int node_bytes() const { return (reference_offset(width) + 7) / 8 * 8; }
 
-  /// 0, 1 or 2.
-  constexpr std::size_t width_number() const { return width == 8 ? 2 : width == 4 ? 1 : 0; }
+  /// Place of the width in kNodeWidth; kNodeWidths if it is none.
+  constexpr std::size_t width_number() const {
+    std::size_t number = 0;
+    while (number < kNodeWidths && kNodeWidth[number] != width) ++number;
+    return number;
+  }
 
-  /// Of quantised8, two children and the frame take what they take as fp32, so there is no such kernel.
+  /// Of quantised8, two children's steps are no whole words, so there is no such kernel.
   constexpr bool has_kernel() const {
-    return width == 4 || width == 8 || (width == 2 && format != NodeFormat::quantised8);
+    return width_number() < kNodeWidths && (width > 2 || format != NodeFormat::quantised8);
   }
 };
 

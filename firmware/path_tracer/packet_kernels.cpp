@@ -3,20 +3,11 @@
 #include "firmware/path_tracer/packet_kernels.hpp"
 
 #include "firmware/path_tracer/nearest_face.hpp"
+#include "firmware/path_tracer/node_ray.hpp"
 
 namespace path_tracer {
 namespace {
 
-using cn::poly4;
-
-constexpr int kAxes = 3;
-
-const poly<double>& component(const vec3<poly<double>>& v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-poly4<double> same4(const poly<double>& a) {
-  return {a, a, a, a};
-}
 poly<std::int32_t> signed_high_word(const poly<double>& a) {
   return cn::reinterpret_word<std::int32_t>(cn::high_word(a));
 }
@@ -45,7 +36,7 @@ struct Slabs4 {
   poly4<double> entry[kAxes];
   poly4<double> exit[kAxes];
 
-  /// The same numbers as BoxRay and NodeVisitor make. Nodes are the same for all PEs, but which side of a box
+  /// The same numbers as BoxRay makes. Nodes are the same for all PEs, but which side of a box
   /// is near is not, so that both are computed before they are told apart.
   Slabs4(const MonoNode::Four& four, const Point3& origin, const Direction3& minus_inverse) {
     for (int axis = 0; axis < kAxes; ++axis) {

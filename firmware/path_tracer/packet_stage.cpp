@@ -10,10 +10,14 @@ namespace {
 constexpr std::uint64_t kPushInstructions = 5;
 constexpr std::uint64_t kPopInstructions = 8;
 
-std::uint64_t order_instructions(int width) {
-  const std::uint64_t comparisons = width == 8 ? 19 : width == 4 ? 5 : 1;
-  return 4 * comparisons;
+/// Of SortingNetwork (node_visitor.hpp).
+constexpr int merge_comparisons(int width) {
+  return width == 2 ? 1 : 2 * merge_comparisons(width / 2) + width / 2 - 1;
 }
+constexpr int sort_comparisons(int width) {
+  return width < 2 ? 0 : 2 * sort_comparisons(width / 2) + merge_comparisons(width);
+}
+static_assert(sort_comparisons(8) == 19);
 
 int bits_of(int numbers) {
   int bits = 0;
@@ -117,8 +121,10 @@ LaneMask PacketStage::rays_that_want(const Entry& entry) {
 }
 
 void PacketStage::visit(const Entry& entry, const LaneMask& rays) {
-  const MonoNode node =
-      read_node(context_.machine, context_.layout.nodes, tree_.tree.shape.layout, entry.reference.first);
+  const NodeLayout& layout = tree_.tree.shape.layout;
+  const MonoNode node = read_node(
+      context_.machine, {context_.layout.nodes, layout, 1.0 / to_node_unit(layout.format, tree_.reach)},
+      entry.reference.first);
   LaneMask enters_first[kMaxNodeWidth];
   VisitArguments arguments;
   arguments.record = record_;
@@ -144,7 +150,7 @@ void PacketStage::push_children(const MonoNode& node, int level, const LaneMask*
     order[i] = i;
   }
   if (all_votes == 0) return;
-  context_.machine.issue_mono(order_instructions(keys_.width()) +
+  context_.machine.issue_mono(4 * std::uint64_t(sort_comparisons(keys_.width())) +
                               kPushInstructions * std::uint64_t(node.children));
   std::stable_sort(order, order + node.children, [&](int a, int b) { return votes[a] < votes[b]; });
   for (int i = 0; i < node.children; ++i) {

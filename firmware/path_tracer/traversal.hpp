@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/path_tracer/node_reader.hpp"
+#include "firmware/path_tracer/node_visitor.hpp"
 #include "firmware/path_tracer/traversal_kernels.hpp"
 
 namespace path_tracer {
@@ -46,14 +46,12 @@ template <NodeFormat format, int width>
 class Traveller {
  public:
   /// @param treelet first slot of the loaded treelet
-  /// @param limit the latest entry that is of use
-  Traveller(const TreeInSram& tree, const PolyPointer<TraversalRecord>& record, const BoxRay& ray,
-            const poly<std::int32_t>& treelet, const poly<double>& limit, Way& way)
+  Traveller(const TreeInSram& tree, const PolyPointer<TraversalRecord>& record, const NodeRay<format>& ray,
+            const poly<std::int32_t>& treelet, Way& way)
       : tree_(tree),
         stack_offset_(record.span().offset_bytes + int{sizeof(TraversalRecord)}),
         visitor_(ray, tree.shape.layout),
         treelet_(treelet),
-        limit_(cn::high_word(limit)),
         way_(way) {}
 
   /// To the next leaf, to a node that is not here, to the end, or as far as a turn goes.
@@ -108,7 +106,7 @@ class Traveller {
   }
 
   void visit() {
-    const VisitOrder<width> order = visitor_.visit(address(way_.node), limit_);
+    const VisitOrder<width> order = visitor_.visit(address(way_.node));
     poly<std::uint64_t> entry[width];
     for (int i = 0; i < width; ++i) entry[i].become(order.entry[i]);
     const poly<std::int32_t> trail_shift = way_.level * kTrailBits;
@@ -116,7 +114,7 @@ class Traveller {
         cn::low_word(cn::shift_right(way_.trail, trail_shift)) & poly<std::uint32_t>((1u << kTrailBits) - 1));
     cn::poly_if_any(left_behind > 0, [&] { skip(left_behind, entry); });
 
-    const poly<std::uint64_t> none = kNoEntry;
+    const poly<std::uint64_t> none = NodeRay<format>::kNoEntry;
     const mask has_siblings = entry[1] != none;
     const poly<std::uint32_t> level_bit = cn::low_word(cn::shift_left(poly<std::uint64_t>(1), way_.level));
     way_.more = way_.more | cn::select(has_siblings, level_bit, poly<std::uint32_t>(0u));
@@ -145,7 +143,7 @@ class Traveller {
     for (int skipped = 0; skipped < width; ++skipped)
       cn::poly_if(left_behind > skipped, [&] {
         for (int i = 0; i + 1 < width; ++i) entry[i] = entry[i + 1];
-        entry[width - 1] = kNoEntry;
+        entry[width - 1] = NodeRay<format>::kNoEntry;
       });
   }
 
@@ -177,7 +175,7 @@ class Traveller {
     const mask is_last = (reference & poly<std::uint32_t>(PackedReference::kFlag)) != poly<std::uint32_t>(0u);
     const poly<std::uint32_t> level_bit = cn::low_word(cn::shift_left(poly<std::uint64_t>(1), level));
     way_.more = way_.more - cn::select(is_last, level_bit, poly<std::uint32_t>(0u));
-    cn::poly_if(cn::high_word(entry) <= limit_, [&] { enter(reference); });
+    cn::poly_if(visitor_.reaches(entry), [&] { enter(reference); });
   }
 
   static constexpr int kTrailBits = trail_bits(width);
@@ -186,7 +184,6 @@ class Traveller {
   int stack_offset_;
   NodeVisitor<format, width> visitor_;
   poly<std::int32_t> treelet_;
-  poly<std::uint32_t> limit_;
   Way& way_;
 };
 

@@ -40,14 +40,15 @@ struct TraversalRecord {
   std::int32_t stack = 0;  ///< place of the next entry, 16 bits, and above that how many there are
 };
 
-/// An entry of the short stack: the upper half of the double at which its box is entered, and the reference
-/// of the child, flagged when it is the last of its siblings.
+/// An entry of the short stack: where its box is entered (node_ray.hpp), and the reference of the child,
+/// flagged when it is the last of its siblings.
 inline constexpr int kStackEntryBytes = 8;
-inline constexpr std::uint64_t kNoEntry = ~std::uint64_t{0};
 
 /// Bits of the trail for a level, which counts from 0 to the width.
 constexpr int trail_bits(int width) {
-  return width == 8 ? 4 : width == 4 ? 3 : 2;
+  int bits = 1;
+  while (width >> bits > 0) ++bits;
+  return bits;
 }
 /// That the trail has room for: 32, 21 or 16.
 constexpr int max_tree_levels(int width) {

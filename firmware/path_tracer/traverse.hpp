@@ -54,9 +54,9 @@ void traverse(const TraverseArguments& arguments) {
   nearest.number.become(arguments.record.get(&TraversalRecord::number));
   Way way(arguments.record);
   if (arguments.loaded_leaf != nullptr) test_leaf(arguments, ray, nearest, way);
-  const poly<double> limit = latest_entry(nearest.distance / cn::abs(nearest.determinant));
-  const BoxRay box_ray(ray.origin, ray.direction);
-  Traveller<format, width>(arguments.tree, arguments.record, box_ray, arguments.treelet.read(), limit, way)
+  const NodeRay<format> node_ray(ray.origin, ray.direction, to_node_unit(format, arguments.reach),
+                                 latest_entry(nearest.distance / cn::abs(nearest.determinant)));
+  Traveller<format, width>(arguments.tree, arguments.record, node_ray, arguments.treelet.read(), way)
       .travel();
   way.write(arguments.record);
   cn::keep(!way.is_over(), *arguments.alive);

@@ -15,8 +15,9 @@ using path_tracer::QuantisedFrame;
 
 constexpr int kAxes = 3;
 constexpr int kSteps = 255;
-constexpr int kLeastExponent = -1022;  // of a double that the chip makes of its exponent
-constexpr int kLargestExponent = 1023;
+constexpr int kExponentBias = 127;
+constexpr int kLeastExponent = 1;                      // with the bias, of a normal float
+constexpr int kLargestExponent = kExponentBias + 119;  // 255 steps are finite yet
 
 template <class T>
 void store(std::uint8_t* node, int offset, const T& value) {
@@ -39,33 +40,43 @@ float rounded_up(double number) {
 }
 
 double coordinate(const QuantisedFrame& frame, int axis, int step) {
-  return frame.origin[axis] + std::ldexp(double(step), frame.exponent[axis]);
+  return double(path_tracer::quantised_coordinate(frame, axis, step));
 }
 
 /// The smallest power of two by which 255 steps reach from the lower end to the upper one.
 QuantisedFrame frame_around(const Box& box) {
   QuantisedFrame frame{};
   for (int axis = 0; axis < kAxes; ++axis) {
-    frame.origin[axis] = box.lower[axis];
-    const double half_extent = 0.5 * box.upper[axis] - 0.5 * box.lower[axis];  // the whole one may overflow
+    frame.origin[axis] = rounded_down(box.lower[axis]);
+    const double half_extent = 0.5 * box.upper[axis] - 0.5 * frame.origin[axis];  // the whole may overflow
     int exponent = kLeastExponent;
-    if (half_extent > 0.0) exponent = std::max(kLeastExponent, std::ilogb(half_extent / kSteps) + 1);
-    frame.exponent[axis] = static_cast<std::int16_t>(exponent);
+    if (half_extent > 0.0)
+      exponent =
+          std::clamp(std::ilogb(half_extent / kSteps) + 1 + kExponentBias, kLeastExponent, kLargestExponent);
+    frame.exponent[axis] = static_cast<std::uint8_t>(exponent);
     while (exponent < kLargestExponent && coordinate(frame, axis, kSteps) < box.upper[axis])
-      frame.exponent[axis] = static_cast<std::int16_t>(++exponent);
+      frame.exponent[axis] = static_cast<std::uint8_t>(++exponent);
   }
   return frame;
 }
 
+/// The step to begin with.
+int step_near(const QuantisedFrame& frame, int axis, double number) {
+  const double steps =
+      std::ldexp(0.5 * number - 0.5 * double(frame.origin[axis]), 1 + kExponentBias - frame.exponent[axis]);
+  return static_cast<int>(std::clamp(std::floor(steps), 0.0, double(kSteps)));
+}
+
+/// The last step that is not above, and the first that is not below, after the sum's rounding.
 std::uint8_t step_below(const QuantisedFrame& frame, int axis, double number) {
-  const double steps = std::ldexp(0.5 * number - 0.5 * frame.origin[axis], 1 - frame.exponent[axis]);
-  int step = static_cast<int>(std::clamp(std::floor(steps), 0.0, double(kSteps)));
-  while (step > 0 && coordinate(frame, axis, step) > number) --step;  // after the sum's rounding
+  int step = step_near(frame, axis, number);
+  while (step < kSteps && coordinate(frame, axis, step + 1) <= number) ++step;
+  while (step > 0 && coordinate(frame, axis, step) > number) --step;
   return static_cast<std::uint8_t>(step);
 }
 std::uint8_t step_above(const QuantisedFrame& frame, int axis, double number) {
-  const double steps = std::ldexp(0.5 * number - 0.5 * frame.origin[axis], 1 - frame.exponent[axis]);
-  int step = static_cast<int>(std::clamp(std::ceil(steps), 0.0, double(kSteps)));
+  int step = step_near(frame, axis, number);
+  while (step > 0 && coordinate(frame, axis, step - 1) >= number) --step;
   while (step < kSteps && coordinate(frame, axis, step) < number) ++step;
   return static_cast<std::uint8_t>(step);
 }
@@ -112,7 +123,11 @@ void encode_node(const BvhNode& node, const NodeLayout& layout, const std::vecto
     store(to, layout.reference_offset(i),
           PackedReference::pack(exists ? reference_to(node.child[std::size_t(i)], slot_of_node)
                                        : ChildReference{}));
-    if (exists) encode_box(node.child[std::size_t(i)].box, layout, frame, i, to);
+    if (exists) {
+      encode_box(node.child[std::size_t(i)].box, layout, frame, i, to);
+    } else if (layout.format != NodeFormat::quantised8) {
+      encode_box(Box{}, layout, frame, i, to);
+    }
   }
 }
 

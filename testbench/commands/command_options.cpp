@@ -157,11 +157,12 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
       ->transform(named_values(traversals_by_name()));
   path_tracer::TreeShape& tree = program.tree;
   tree.resident_nodes = kAsManyAsFit;
-  command.add_option("--node-format", tree.layout.format, "Boxes of the tree: fp64, fp32 or quantised8")
+  command.add_option("--node-format", wishes_.node_format, "Boxes of the tree: fp64, fp32 or quantised8")
       ->transform(named_values(node_formats_by_name()))
-      ->default_str(node_format_name(tree.layout.format));
+      ->default_str("what the traversal makes fastest");
   command.add_option("--node-width", wishes_.node_width, "Children of a node: 2, 4 or 8")
-      ->check(CLI::IsMember({2, 4, 8}))
+      ->check(CLI::IsMember(
+          std::vector<int>(std::begin(path_tracer::kNodeWidth), std::end(path_tracer::kNodeWidth))))
       ->default_str("what the scene makes fastest");
   command.add_option("--leaf-triangles", tree.leaf_triangles, "Triangles of a leaf, at most")
       ->capture_default_str();
@@ -176,12 +177,12 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
   command
       .add_option("--visits", wishes_.visits,
                   "Nodes that a ray visits before PEs load again, at most; 0: all that are in SRAM")
-      ->default_str(std::to_string(tree.visits) + ", of narrower nodes more, of wider fewer");
+      ->default_str("3 to 6, by the nodes' width and format");
 }
 
 std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig& chip,
                                     path_tracer::ProgramConfig& program) const {
-  program.tree = wished_tree(program.tree, wishes_);
+  program.tree = wished_tree(program, wishes_);
   const TraversalChoice choice = choose_traversal(scene.triangles.size(), program.tree, chip);
   program.traversal = chosen_.value_or(choice.traversal);
   if (program.uses_tree()) program.tree = tree_that_fits(scene.triangles.size(), program, chip, wishes_);

@@ -98,7 +98,11 @@ RunParameter node_format() {
 }
 
 RunParameter node_width() {
-  static const Values widths = {"2", "4", "8"};
+  static const Values widths = [] {
+    Values names;
+    for (const int width : path_tracer::kNodeWidth) names.push_back(std::to_string(width));
+    return names;
+  }();
   return {"firmware.node_width", one_of(widths), Effect::stream,
           [](RunSettings& run, const std::string& value) {
             if (std::find(widths.begin(), widths.end(), value) == widths.end()) return false;

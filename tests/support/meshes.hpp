@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "testbench/scene/scene.hpp"
+#include "firmware/path_tracer/node_layout.hpp"
+#include "testbench/bvh/bvh.hpp"
 
 namespace test_support {
 
@@ -97,6 +99,18 @@ inline std::vector<Triangle> mesh(Mesh kind) {
       return soup(500, 1e-300, 1e-301, 8);
   }
   return {};
+}
+
+/// As the boxes of a tree's nodes are told.
+inline std::vector<testbench::Triangle> in_nodes_unit(std::vector<testbench::Triangle> triangles,
+                                                      path_tracer::NodeFormat format) {
+  testbench::Box all;
+  for (const testbench::Triangle& triangle : triangles) all.include(bounds_of(triangle));
+  const glm::dvec3 size = all.upper - all.lower;
+  const double unit = path_tracer::to_node_unit(format, std::max({size.x, size.y, size.z}));
+  for (testbench::Triangle& triangle : triangles)
+    for (glm::dvec3& vertex : triangle.vertex) vertex *= unit;
+  return triangles;
 }
 
 }  // namespace test_support

@@ -26,9 +26,14 @@ bool is_kept(const std::string& key) {
 }
 
 FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
-  const RenderResult result = render_on_chip(scene, run.options);
+  RenderOptions options = run.options;
+  if (options.program.uses_tree()) {
+    options.program.tree = tree_that_fits(scene.triangles.size(), options.program, options.chip, run.tree);
+    complete_traversal(scene.triangles.size(), options.chip, options.program);
+  }
+  const RenderResult result = render_on_chip(scene, options);
   FlatStatistics kept;
-  for (auto& value : flatten(render_statistics({run.scene, run.options, false}, result)))
+  for (auto& value : flatten(render_statistics({run.scene, options, false}, result)))
     if (is_kept(value.first)) kept.push_back(std::move(value));
   return kept;
 }

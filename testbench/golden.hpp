@@ -8,6 +8,7 @@
 
 #include "testbench/render.hpp"
 #include "testbench/statistics_difference.hpp"
+#include "testbench/traversal_choice.hpp"
 
 namespace testbench {
 
@@ -17,6 +18,7 @@ struct GoldenRun {
   std::string name;   ///< its column: "full n1 both lt"
   std::string scene;  ///< path of its directory
   RenderOptions options;
+  TreeWishes tree;  ///< the rest is chosen as `csx600 render` does
 };
 
 /// The runs that DIRECTORY/grid.toml asks for:
@@ -31,6 +33,9 @@ struct GoldenRun {
 ///     n = [0, 1]
 ///     buffers = ["both"]                       loads, saves, both or none
 ///     timings = ["lt"]                         lt or at
+///     traversals = ["refill"]                  may be left out: brute_force
+///     node_formats = ["fp32"]                  may be left out, of trees only
+///     node_widths = [4]                        likewise
 ///
 /// `program` gives all that the grid does not. Throws InputError.
 struct GoldenGrid {

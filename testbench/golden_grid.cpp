@@ -1,5 +1,6 @@
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -19,6 +20,31 @@ constexpr std::array kPrograms = {path_tracer::Program::segments, path_tracer::P
 [[noreturn]] void refuse(const std::string& file, const std::string& key, const std::string& found,
                          const std::string& allowed) {
   throw InputError(file + ": " + key + ": found " + found + ", allowed is " + allowed);
+}
+
+/// One run, in the words of the grid.
+struct RunKeys {
+  std::string scene;
+  std::string chip;
+  std::string program;
+  std::int64_t n = 0;
+  std::string buffer;
+  std::string timing;
+  std::string traversal;
+  std::string node_format;
+  std::int64_t node_width = 0;
+};
+
+/// Each of the runs with each of the values.
+template <class T>
+void multiply(std::vector<RunKeys>& runs, T RunKeys::*key, const std::vector<T>& values) {
+  std::vector<RunKeys> product;
+  for (const RunKeys& run : runs)
+    for (const T& value : values) {
+      product.push_back(run);
+      product.back().*key = value;
+    }
+  runs = std::move(product);
 }
 
 class GridReader {
@@ -71,16 +97,28 @@ class GridReader {
       refuse(file_, key, "no list or one with other values", "a list of strings, or of integers for n");
     return values;
   }
-  std::vector<std::string> list_of(const toml::table& table, const char* key,
-                                   const std::set<std::string>& allowed) const {
-    std::vector<std::string> values = list<std::string>(table, key);
-    for (const std::string& value : values)
-      if (allowed.count(value) == 0) {
-        std::string names;
-        for (const std::string& name : allowed) names += (names.empty() ? "" : ", ") + name;
-        refuse(file_, key, value, "one of " + names);
-      }
+  template <class T>
+  std::vector<T> list_of(const toml::table& table, const char* key, const std::vector<T>& allowed) const {
+    std::vector<T> values = list<T>(table, key);
+    for (const T& value : values)
+      if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
+        refuse(file_, key, word(value), "one of " + words(allowed));
     return values;
+  }
+  /// Of a key that may be left out.
+  template <class T>
+  std::vector<T> list_or(const T& otherwise, const toml::table& table, const char* key,
+                         const std::vector<T>& allowed) const {
+    return table.contains(key) ? list_of(table, key, allowed) : std::vector<T>{otherwise};
+  }
+
+  static std::string word(const std::string& value) { return value; }
+  static std::string word(std::int64_t value) { return std::to_string(value); }
+  template <class T>
+  static std::string words(const std::vector<T>& values) {
+    std::string joined;
+    for (const T& value : values) joined += (joined.empty() ? "" : ", ") + word(value);
+    return joined;
   }
 
   /// Once: products may overlap.
@@ -91,42 +129,59 @@ class GridReader {
   }
 
   void add_product(const toml::table& table, GoldenGrid& grid) const {
-    only(table, {"scenes", "chips", "programs", "n", "buffers", "timings"});
-    const auto programs = list_of(table, "programs", {"segments", "direct", "full"});
-    const auto buffers = list_of(table, "buffers", {"both", "loads", "saves", "none"});
-    const auto timings = list_of(table, "timings", {"lt", "at"});
-    const auto depths = list<std::int64_t>(table, "n");
-    for (const std::string& scene : list<std::string>(table, "scenes"))
-      for (const std::string& chip : list<std::string>(table, "chips"))
-        for (const std::string& program : programs)
-          for (const std::int64_t n : depths)
-            for (const std::string& buffer : buffers)
-              for (const std::string& timing : timings)
-                add(run(scene, chip, program, int(n), buffer, timing), grid);
+    only(table, {"scenes", "chips", "programs", "n", "buffers", "timings", "traversals", "node_formats",
+                 "node_widths"});
+    using Words = std::vector<std::string>;
+    const std::vector<std::int64_t> widths(std::begin(path_tracer::kNodeWidth),
+                                           std::end(path_tracer::kNodeWidth));
+    const path_tracer::NodeLayout& layout = program_.tree.layout;
+    std::vector<RunKeys> runs(1);
+    multiply(runs, &RunKeys::scene, list<std::string>(table, "scenes"));
+    multiply(runs, &RunKeys::chip, list<std::string>(table, "chips"));
+    multiply(runs, &RunKeys::program, list_of(table, "programs", Words{"direct", "full", "segments"}));
+    multiply(runs, &RunKeys::n, list<std::int64_t>(table, "n"));
+    multiply(runs, &RunKeys::buffer, list_of(table, "buffers", Words{"both", "loads", "none", "saves"}));
+    multiply(runs, &RunKeys::timing, list_of(table, "timings", Words{"at", "lt"}));
+    multiply(
+        runs, &RunKeys::traversal,
+        list_or(traversal_name(path_tracer::Traversal::brute_force), table, "traversals", traversal_names()));
+    multiply(runs, &RunKeys::node_format,
+             list_or(node_format_name(layout.format), table, "node_formats", node_format_names()));
+    multiply(runs, &RunKeys::node_width, list_or(std::int64_t{layout.width}, table, "node_widths", widths));
+    for (const RunKeys& keys : runs) add(run(keys), grid);
   }
 
-  GoldenRun run(const std::string& scene, const std::string& chip, const std::string& program, int n,
-                const std::string& buffer, const std::string& timing) const {
-    const fs::path path = (directory_ / scene).lexically_normal();
+  GoldenRun run(const RunKeys& keys) const {
+    const fs::path path = (directory_ / keys.scene).lexically_normal();
     GoldenRun run;
     run.scene = path;
-    run.file = path.filename().string() + "-" + chip + ".csv";
-    run.name = program + " n" + std::to_string(n) + " " + buffer + " " + timing;
+    run.file = path.filename().string() + "-" + keys.chip + ".csv";
+    run.name = keys.program + " n" + std::to_string(keys.n) + " " + keys.buffer + " " + keys.timing;
     try {
-      run.options.chip = model::load_chip(chip);
+      run.options.chip = model::load_chip(keys.chip);
     } catch (const model::ConfigError& error) {
       throw InputError(file_ + ": " + error.what());
     }
     run.options.work.samples = samples_;
     run.options.program = program_;
     for (const path_tracer::Program one : kPrograms)
-      if (program_name(one) == program) run.options.program.program = one;
-    run.options.program.n = n;
-    run.options.program.buffer_loads = buffer == "both" || buffer == "loads";
-    run.options.program.buffer_saves = buffer == "both" || buffer == "saves";
+      if (program_name(one) == keys.program) run.options.program.program = one;
+    run.options.program.n = int(keys.n);
+    run.options.program.buffer_loads = keys.buffer == "both" || keys.buffer == "loads";
+    run.options.program.buffer_saves = keys.buffer == "both" || keys.buffer == "saves";
     run.options.timing =
-        timing == "at" ? model::TimingStyle::approximately_timed : model::TimingStyle::loosely_timed;
+        keys.timing == "at" ? model::TimingStyle::approximately_timed : model::TimingStyle::loosely_timed;
+    run.options.program.traversal = traversals_by_name().at(keys.traversal);
+    if (run.options.program.uses_tree()) set_tree(keys, run);
     return run;
+  }
+
+  static void set_tree(const RunKeys& keys, GoldenRun& run) {
+    run.name += " " + keys.traversal + " " + keys.node_format + " " + std::to_string(keys.node_width);
+    path_tracer::TreeShape& tree = run.options.program.tree;
+    tree.resident_nodes = kAsManyAsFit;
+    run.tree.node_format = node_formats_by_name().at(keys.node_format);
+    run.tree.node_width = int(keys.node_width);
   }
 
   fs::path directory_;

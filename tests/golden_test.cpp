@@ -89,6 +89,36 @@ TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
                                     "[\"both\"]\ntimings = [\"lt\"]\n")),
             "grid.toml: n: found no list or one with other values, allowed is a list of strings, or of "
             "integers for n");
+  const auto of_tree = [&](const std::string& key) {
+    return refusal(kHead + product("chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = "
+                                   "[\"both\"]\ntimings = [\"lt\"]\n" +
+                                   key));
+  };
+  EXPECT_EQ(of_tree("node_widths = [3]\n"), "grid.toml: node_widths: found 3, allowed is one of 2, 4, 8");
+  EXPECT_EQ(of_tree("node_formats = [\"fp16\"]\n"),
+            "grid.toml: node_formats: found fp16, allowed is one of fp64, fp32, quantised8");
+  EXPECT_EQ(of_tree("traversals = [\"magic\"]\n").rfind("grid.toml: traversals: found magic, allowed is", 0),
+            0u);
+}
+
+TEST_F(Golden, TreesHaveAWayAFormatAndAWidth) {
+  const GoldenGrid read = grid(kHead + product("chips = [\"csx600\"]\nprograms = [\"segments\"]\nn = [1]\n"
+                                               "buffers = [\"both\"]\ntimings = [\"lt\"]\n"
+                                               "traversals = [\"brute_force\", \"refill\"]\n"
+                                               "node_formats = [\"fp64\"]\nnode_widths = [2, 8]\n"));
+  ASSERT_EQ(read.runs.size(), 3u);
+  EXPECT_EQ(read.runs[0].name, "segments n1 both lt");
+  EXPECT_EQ(read.runs[1].name, "segments n1 both lt refill fp64 2");
+  EXPECT_EQ(read.runs[2].name, "segments n1 both lt refill fp64 8");
+  const GoldenTables found = testbench::run_golden(read, 1);
+  const auto value = [&](std::size_t run, const std::string& key) -> std::string {
+    for (const auto& [name, counter] : found.at("cornell_box-csx600.csv")[run].second)
+      if (name == key) return counter.dump();
+    return "";
+  };
+  EXPECT_EQ(value(0, "image_sha256"), value(1, "image_sha256"));
+  EXPECT_EQ(value(0, "image_sha256"), value(2, "image_sha256"));
+  EXPECT_NE(value(1, "simulated_cycles"), value(2, "simulated_cycles"));
 }
 
 TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {

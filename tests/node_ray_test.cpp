@@ -85,6 +85,19 @@ class SingleNodeRayTest : public test_support::StripFixture, public testing::Wit
     return {ray.origin, ray.direction * std::ldexp(1.0, int(one_of(80)) - 40)};
   }
 
+  struct Aimed {
+    PerPe<Box> boxes;
+    PerPe<Ray> rays;
+  };
+  Aimed aimed() {
+    Aimed aimed;
+    for (int pe = 0; pe < num_pes(); ++pe) {
+      aimed.boxes.push_back(box());
+      aimed.rays.push_back(ray_for(aimed.boxes.back()));
+    }
+    return aimed;
+  }
+
   struct Found {
     PerPe<std::uint64_t> narrow;  ///< entry of the node
     PerPe<double> entry, exit;    ///< by BoxRay
@@ -151,12 +164,7 @@ TEST_P(SingleNodeRayTest, MeetsWhatBoxRayMeetsAndEntersItNoLater) {
   int met = 0;
   int missed = 0;
   for (int round = 0; round < 60; ++round) {
-    PerPe<Box> boxes;
-    PerPe<Ray> rays;
-    for (int pe = 0; pe < num_pes(); ++pe) {
-      boxes.push_back(box());
-      rays.push_back(ray_for(boxes.back()));
-    }
+    const auto [boxes, rays] = aimed();
     const Found found = meet(rays, boxes, per_pe<double>(std::numeric_limits<double>::infinity()));
     for (std::size_t pe = 0; pe < rays.size(); ++pe) {
       const bool is_met = found.narrow[pe] != SingleNodeRay::kNoEntry;
@@ -179,12 +187,7 @@ TEST_P(SingleNodeRayTest, MissesWhatIsSomeRoundingsAway) {
   const double margin = 0x1p-18 / to_node_unit(NodeFormat::fp32, reach());
   int missed = 0;
   for (int round = 0; round < 30; ++round) {
-    PerPe<Box> boxes;
-    PerPe<Ray> rays;
-    for (int pe = 0; pe < num_pes(); ++pe) {
-      boxes.push_back(box());
-      rays.push_back(ray_for(boxes.back()));
-    }
+    const auto [boxes, rays] = aimed();
     PerPe<Box> larger = boxes;
     for (Box& box : larger)
       for (double Vector::*component : kComponents) {
@@ -208,12 +211,7 @@ TEST_P(SingleNodeRayTest, MeetsWhatIsEnteredAtTheLimit) {
   int met = 0;
   int too_late = 0;
   for (int round = 0; round < 30; ++round) {
-    PerPe<Box> boxes;
-    PerPe<Ray> rays;
-    for (int pe = 0; pe < num_pes(); ++pe) {
-      boxes.push_back(box());
-      rays.push_back(ray_for(boxes.back()));
-    }
+    const auto [boxes, rays] = aimed();
     const double infinity = std::numeric_limits<double>::infinity();
     const Found unlimited = meet(rays, boxes, per_pe<double>(infinity));
     const Found at_limit = meet(rays, boxes, unlimited.entry);

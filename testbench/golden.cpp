@@ -27,10 +27,7 @@ bool is_kept(const std::string& key) {
 
 FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
   RenderOptions options = run.options;
-  if (options.program.uses_tree()) {
-    options.program.tree = tree_that_fits(scene.triangles.size(), options.program, options.chip, run.tree);
-    complete_traversal(scene.triangles.size(), options.chip, options.program);
-  }
+  fit_tree(scene.triangles.size(), options.chip, run.tree, options.program);
   const RenderResult result = render_on_chip(scene, options);
   FlatStatistics kept;
   for (auto& value : flatten(render_statistics({run.scene, options, false}, result)))

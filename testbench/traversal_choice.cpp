@@ -210,4 +210,10 @@ void complete_traversal(std::size_t triangles, const model::ChipConfig& chip, Pr
   program.tree.resident_nodes = resident_nodes_that_fit(triangles, program, chip);
 }
 
+void fit_tree(std::size_t triangles, const model::ChipConfig& chip, const TreeWishes& wishes,
+              ProgramConfig& program) {
+  if (program.uses_tree()) program.tree = tree_that_fits(triangles, program, chip, wishes);
+  complete_traversal(triangles, chip, program);
+}
+
 }  // namespace testbench

@@ -64,4 +64,8 @@ inline constexpr int kAsManyAsFit = 0;
 void complete_traversal(std::size_t triangles, const model::ChipConfig& chip,
                         path_tracer::ProgramConfig& program);
 
+/// Both: gives the program, if it uses a tree, one that fits and as many resident nodes.
+void fit_tree(std::size_t triangles, const model::ChipConfig& chip, const TreeWishes& wishes,
+              path_tracer::ProgramConfig& program);
+
 }  // namespace testbench

@@ -9,6 +9,7 @@ namespace {
 // reference, and a branch; the order of children is a network of comparisons, one in four instructions.
 constexpr std::uint64_t kPushInstructions = 5;
 constexpr std::uint64_t kPopInstructions = 8;
+constexpr std::uint64_t kComparisonInstructions = 4;
 
 /// Of SortingNetwork (node_visitor.hpp).
 constexpr int merge_comparisons(int width) {
@@ -33,7 +34,9 @@ PacketStage::PacketStage(const StageContext& context, TreeContext& tree)
   BufferCutter cutter(memory.allocate("packet", int{sizeof(TraversalRecord)} + int{sizeof(PacketRecord)}));
   record_ = cutter.take<TraversalRecord>();
   packet_ = cutter.take<PacketRecord>();
-  const int width = tree.tree.shape.layout.width;
+  const NodeLayout& layout = tree.tree.shape.layout;
+  nodes_ = {context.layout.nodes, layout, 1.0 / to_node_unit(layout.format, tree.reach)};
+  const int width = layout.width;
   keys_ = PacketKeys(memory.allocate("packet's keys", PacketKeys::bytes(width)), width);
 }
 
@@ -121,10 +124,7 @@ LaneMask PacketStage::rays_that_want(const Entry& entry) {
 }
 
 void PacketStage::visit(const Entry& entry, const LaneMask& rays) {
-  const NodeLayout& layout = tree_.tree.shape.layout;
-  const MonoNode node = read_node(
-      context_.machine, {context_.layout.nodes, layout, 1.0 / to_node_unit(layout.format, tree_.reach)},
-      entry.reference.first);
+  const MonoNode node = read_node(context_.machine, nodes_, entry.reference.first);
   LaneMask enters_first[kMaxNodeWidth];
   VisitArguments arguments;
   arguments.record = record_;
@@ -150,7 +150,7 @@ void PacketStage::push_children(const MonoNode& node, int level, const LaneMask*
     order[i] = i;
   }
   if (all_votes == 0) return;
-  context_.machine.issue_mono(4 * std::uint64_t(sort_comparisons(keys_.width())) +
+  context_.machine.issue_mono(kComparisonInstructions * std::uint64_t(sort_comparisons(keys_.width())) +
                               kPushInstructions * std::uint64_t(node.children));
   std::stable_sort(order, order + node.children, [&](int a, int b) { return votes[a] < votes[b]; });
   for (int i = 0; i < node.children; ++i) {

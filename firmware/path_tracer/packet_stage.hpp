@@ -41,6 +41,7 @@ class PacketStage : public TreeStage {
   PolyPointer<TraversalRecord> record_;  ///< of the block that is processed
   PolyPointer<PacketRecord> packet_;
   PacketKeys keys_;
+  MonoNodes nodes_;
   LaneMask rays_;
   std::vector<Entry> stack_;
 };

@@ -177,7 +177,7 @@ void TraversalOption::add_to(CLI::App& command, path_tracer::ProgramConfig& prog
   command
       .add_option("--visits", wishes_.visits,
                   "Nodes that a ray visits before PEs load again, at most; 0: all that are in SRAM")
-      ->default_str("3 to 6, by the nodes' width and format");
+      ->default_str("2 to 8, by the traversal and the nodes' width and format");
 }
 
 std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig& chip,
@@ -185,8 +185,7 @@ std::string TraversalOption::choose(const Scene& scene, const model::ChipConfig&
   program.tree = wished_tree(program, wishes_);
   const TraversalChoice choice = choose_traversal(scene.triangles.size(), program.tree, chip);
   program.traversal = chosen_.value_or(choice.traversal);
-  if (program.uses_tree()) program.tree = tree_that_fits(scene.triangles.size(), program, chip, wishes_);
-  complete_traversal(scene.triangles.size(), chip, program);
+  fit_tree(scene.triangles.size(), chip, wishes_, program);
   return chosen_ ? "" : choice.reason;
 }
 

@@ -97,7 +97,7 @@ FftArguments Fft::arguments(int number) {
   arguments.data = PolyArray<std::uint64_t>(buffer_[number % 2]);
   arguments.scratch = PolyArray<std::uint64_t>(scratch_);
   arguments.twiddles = machine_.read_mono(layout_.twiddles, kComplexPerPe);
-  arguments.decimate_in_time = step(number).pass == 1;
+  arguments.from_reversed = step(number).pass == 1;
   return arguments;
 }
 
@@ -111,7 +111,7 @@ void Fft::transform(int number) {
       machine_.run(kernels_.fft_pair_store, arguments, all);
     }
   };
-  if (arguments.decimate_in_time) {
+  if (arguments.from_reversed) {
     machine_.run(kernels_.fft_local, arguments, all);
     machine_.run(kernels_.fft_twiddle, arguments, all);
     between_pes();

@@ -65,37 +65,85 @@ inline Complex4 twice_minus(const Complex4& a, const Complex4& sum) {
   return {multiply_subtract(a.real, 2.0f, sum.real), multiply_subtract(a.imaginary, 2.0f, sum.imaginary)};
 }
 
-/// The 256 numbers of each PE, by itself. Decimation in frequency takes them in natural order and leaves them
-/// in bit-reversed order; decimation in time the other way round.
+/// Two stages of butterflies on four complex numbers, at first + x * first_span + y * second_span: between
+/// the two x, then between the two y.
+struct Quad {
+  int first;
+  int first_span;
+  int second_span;
+
+  int at(int x, int y) const { return first + x * first_span + y * second_span; }
+};
+
+/// Quad `number` of 64 in stages `stage` and `stage` + 1. Spans grow where numbers come in bit-reversed
+/// order, and shrink where they come in natural order.
+inline Quad quad(const FftArguments& arguments, int stage, int number) {
+  const int small = 1 << (arguments.from_reversed ? stage : kIndexBits - 2 - stage);
+  const int within = number % small;
+  const int first = 4 * (number - within) + within;
+  return arguments.from_reversed ? Quad{first, small, 2 * small} : Quad{first, 2 * small, small};
+}
+
+/// Which twiddle a butterfly of the numbers `upper` and `upper` + span takes (Cooley and Tukey, 1965): by its
+/// place within its block, or by its block's bit-reversed number.
+inline int twiddle_of(const FftArguments& arguments, int span, int upper) {
+  if (arguments.from_reversed) return upper % span * (kComplexPerPe / span);
+  int reversed = 0;
+  for (int block = upper / (2 * span), bit = kComplexPerPe / 2; block != 0; block >>= 1, bit >>= 1)
+    reversed += block % 2 * bit;
+  return reversed;
+}
+
+struct Butterflies4 {
+  Complex4 sum;
+  Complex4 difference;
+};
+
+inline Butterflies4 butterflies(const FftArguments& arguments, const Complex4& a, const Complex4& b,
+                                const cn::Indices4& twiddles) {
+  if (twiddles == cn::Indices4{}) return {a + b, a - b};
+  const Complex4 sum = add_product(a, b, factors(arguments.twiddles, twiddles));
+  return {sum, twice_minus(a, sum)};
+}
+
+/// The numbers at even (0) or odd (1) places of the sums, then of the differences: every second complex
+/// number of 64 bytes of registers.
+inline Complex4 every_second(const Butterflies4& from, int first) {
+  const Complex4& a = from.sum;
+  const Complex4& b = from.difference;
+  return {{a.real[first], a.real[first + 2], b.real[first], b.real[first + 2]},
+          {a.imaginary[first], a.imaginary[first + 2], b.imaginary[first], b.imaginary[first + 2]}};
+}
+
+/// Two stages of two quads: eight complex numbers, 64 of the 128 bytes of registers, and as much for what
+/// becomes of them.
+inline void two_stages(const FftArguments& arguments, const Quad& one, const Quad& two) {
+  const auto places = [&](int x0, int y0, int x1, int y1) {
+    return cn::Indices4{one.at(x0, y0), one.at(x1, y1), two.at(x0, y0), two.at(x1, y1)};
+  };
+  const auto twiddles = [&](int span, const cn::Indices4& upper) {
+    cn::Indices4 at;
+    for (std::size_t i = 0; i < 4; ++i) at[i] = twiddle_of(arguments, span, upper[i]);
+    return at;
+  };
+  const cn::Indices4 x0 = places(0, 0, 0, 1);
+  const cn::Indices4 x1 = places(1, 0, 1, 1);
+  const Butterflies4 first = butterflies(arguments, to_complex(arguments.data.load(x0)),
+                                         to_complex(arguments.data.load(x1)), twiddles(one.first_span, x0));
+  const cn::Indices4 y0{one.at(0, 0), two.at(0, 0), one.at(1, 0), two.at(1, 0)};
+  const cn::Indices4 y1{one.at(0, 1), two.at(0, 1), one.at(1, 1), two.at(1, 1)};
+  const Butterflies4 second =
+      butterflies(arguments, every_second(first, 0), every_second(first, 1), twiddles(one.second_span, y0));
+  arguments.data.store(y0, to_words(second.sum));
+  arguments.data.store(y1, to_words(second.difference));
+}
+
+/// The 256 numbers of each PE, by itself: from bit-reversed order to natural, or the other way round. Stages
+/// go two by two, so each number is loaded and stored four times instead of eight.
 inline void fft_local(const FftArguments& arguments) {
-  for (int stage = 0; stage < kIndexBits; ++stage) {
-    const int span = 1 << (arguments.decimate_in_time ? stage : kIndexBits - 1 - stage);
-    for (int butterfly = 0; butterfly < kComplexPerPe / 2; butterfly += 4) {
-      cn::Indices4 upper;
-      cn::Indices4 lower;
-      cn::Indices4 twiddle_at;
-      for (int i = 0; i < 4; ++i) {
-        const int within = (butterfly + i) % span;
-        upper[std::size_t(i)] = 2 * (butterfly + i) - within;
-        lower[std::size_t(i)] = upper[std::size_t(i)] + span;
-        twiddle_at[std::size_t(i)] = within * (kComplexPerPe / span);
-      }
-      const Factor4 twiddle = factors(arguments.twiddles, twiddle_at);
-      const Complex4 a = to_complex(arguments.data.load(upper));
-      const Complex4 b = to_complex(arguments.data.load(lower));
-      if (span == 1) {  // all factors are 1
-        arguments.data.store(upper, to_words(a + b));
-        arguments.data.store(lower, to_words(a - b));
-      } else if (arguments.decimate_in_time) {
-        const Complex4 sum = add_product(a, b, twiddle);
-        arguments.data.store(upper, to_words(sum));
-        arguments.data.store(lower, to_words(twice_minus(a, sum)));
-      } else {
-        arguments.data.store(upper, to_words(a + b));
-        arguments.data.store(lower, to_words((a - b) * twiddle));
-      }
-    }
-  }
+  for (int stage = 0; stage < kIndexBits; stage += 2)
+    for (int number = 0; number < kComplexPerPe / 4; number += 2)
+      two_stages(arguments, quad(arguments, stage, number), quad(arguments, stage, number + 1));
 }
 
 /// True in the PEs whose number has that bit.

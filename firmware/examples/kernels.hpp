@@ -61,7 +61,7 @@ struct FftArguments {
   PolyArray<std::uint64_t> data;
   PolyArray<std::uint64_t> scratch;   ///< half as long
   const Complex* twiddles = nullptr;  ///< mono: exp(-2 pi i k / 512), k = 0..255
-  bool decimate_in_time = false;      ///< else in frequency
+  bool from_reversed = false;         ///< local: bit-reversed order to natural, else back
   int half = 0;                       ///< 0 or 1, of steps that need scratch for all data
   int pe_bit = 0;                     ///< exchange: of the PE's number
   int index_bit = 0;                  ///< exchange: of the index in `data`

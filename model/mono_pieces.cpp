@@ -7,9 +7,19 @@
 namespace model {
 namespace {
 
+/// From the start of one on.
+std::uint64_t packets_of(std::uint64_t bytes, const Divisor& packet) {
+  return packet.quotient(bytes + packet.value() - 1);
+}
+
 /// The bytes of as many packets as a piece needs wherever it lies.
 std::uint64_t whole_packets(std::uint64_t bytes, const Divisor& packet) {
-  return packet.quotient(bytes + packet.value() - 1) * packet.value();
+  return packets_of(bytes, packet) * packet.value();
+}
+
+/// Beyond all memory when there is no such address.
+cn::MonoAddress end_of(cn::MonoAddress address, std::uint64_t bytes) {
+  return address + bytes < address ? ~cn::MonoAddress{0} : address + bytes;
 }
 
 bool is_misaligned(cn::MonoAddress address, std::uint64_t bytes, std::uint64_t packets_bytes,
@@ -18,6 +28,7 @@ bool is_misaligned(cn::MonoAddress address, std::uint64_t bytes, std::uint64_t p
 }
 
 constexpr int kWordLanes = 64;
+constexpr unsigned kAllLanes = (1u << cn::kStripLanes) - 1;
 
 /// The enable bits of PEs first_pe .. first_pe + 63 below `num_pes`.
 std::uint64_t enabled_word(const cn::LaneMask& enabled, int first_pe, int num_pes) {
@@ -70,8 +81,8 @@ void MonoPieces::describe(const cn::Transfer& transfer, int num_pes, const Rules
 
 void MonoPieces::append_run(cn::MonoAddress address, std::uint64_t bytes, const Divisor& packet_bytes) {
   runs_.storage_[runs_.count_++] = {address, bytes};
-  packets_ += packet_bytes.quotient(bytes + packet_bytes.value() - 1);
-  end_ = std::max(end_, address + bytes < address ? ~cn::MonoAddress{0} : address + bytes);
+  packets_ += packets_of(bytes, packet_bytes);
+  end_ = std::max(end_, end_of(address, bytes));
 }
 
 const MonoPieces::MisalignedPattern& MonoPieces::pattern(const Rules& rules) {
@@ -140,19 +151,27 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   const std::uint64_t packets_bytes = whole_packets(bytes, rules.packet_bytes);
   const cn::MonoAddress* const address = addresses_.data();
   int misaligned = 0;
-  for (int i = 0; i < pieces_; ++i)
+  cn::MonoAddress last = 0;
+  for (int i = 0; i < pieces_; ++i) {
     misaligned += is_misaligned(address[i], bytes, packets_bytes, rules.packet_bytes);
+    last = std::max(last, address[i]);
+  }
   misaligned_ = misaligned;
-  for (int i = 0; i < pieces_;) {
+  if (pieces_ > 0) end_ = end_of(last, bytes);
+  const std::uint64_t packets_of_one = packets_bytes / rules.packet_bytes.value();
+  Run* run = runs_.storage_.data();
+  for (int i = 0; i < pieces_; ++run) {
     const int first = i;
     while (++i < pieces_ && address[i] == address[i - 1] + bytes) {
     }
-    append_run(address[first], std::uint64_t(i - first) * bytes, rules.packet_bytes);
+    *run = {address[first], std::uint64_t(i - first) * bytes};
+    packets_ += i - first == 1 ? packets_of_one : packets_of(run->bytes, rules.packet_bytes);
   }
+  runs_.count_ = std::size_t(run - runs_.storage_.data());
 }
 
-/// The addresses of all PEs that take part, in their order. Without a branch on who does: nobody could
-/// predict it.
+/// The addresses of all PEs that take part, in their order. Where not all of a strip do, without a branch on
+/// who does: nobody could predict it.
 template <class AddressOf>
 void MonoPieces::collect(int num_pes, const AddressOf& address_of) {
   addresses_.resize(std::size_t(num_pes) + 1);  // what comes behind the last is written, too
@@ -160,6 +179,10 @@ void MonoPieces::collect(int num_pes, const AddressOf& address_of) {
   std::size_t pes = 0;
   for (int first_pe = 0; first_pe < num_pes; first_pe += cn::kStripLanes) {
     const unsigned bits = enabled_.strip_bits(first_pe / cn::kStripLanes);
+    if (bits == kAllLanes) {
+      for (int lane = 0; lane < cn::kStripLanes; ++lane) addresses[pes++] = address_of(first_pe + lane);
+      continue;
+    }
     for (int lane = 0; lane < cn::kStripLanes; ++lane) {
       addresses[pes] = address_of(first_pe + lane);
       pes += (bits >> lane) & 1u;

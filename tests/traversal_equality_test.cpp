@@ -3,14 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
-#include "testbench/scene/generated_scene.hpp"
-#include "testbench/scene/mesh.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/node_layouts.hpp"
+#include "tests/support/search_meshes.hpp"
 #include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
@@ -21,138 +16,12 @@ using path_tracer::QueuedRay;
 using path_tracer::RayRecord;
 using path_tracer::TreeShape;
 using test_support::RaySearch;
+using test_support::scene_of;
 using test_support::search_scene;
 using test_support::SearchHit;
 using test_support::SearchScene;
 using test_support::TestRays;
 using testbench::Scene;
-using testbench::Triangle;
-
-std::vector<Triangle> scaled(std::vector<Triangle> triangles, double factor) {
-  for (Triangle& triangle : triangles)
-    for (glm::dvec3& vertex : triangle.vertex) vertex *= factor;
-  return triangles;
-}
-
-/// Rectangles across the axes, some side by side, some through each other; all boxes are flat.
-std::vector<Triangle> flats() {
-  std::vector<Triangle> triangles;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i < 40; ++i) {
-      glm::dvec3 corner(0.0), u(0.0), v(0.0);
-      corner[axis] = i / 8;
-      u[(axis + 1) % 3] = 1.0;
-      v[(axis + 2) % 3] = 1.0;
-      corner += u * double(i % 8) + v * double(i % 5);
-      triangles.push_back(test_support::triangle(corner, corner + u, corner + u + v));
-      triangles.push_back(test_support::triangle(corner, corner + u + v, corner + v));
-    }
-  return triangles;
-}
-
-/// One around the other, all about one point.
-std::vector<Triangle> nested() {
-  std::vector<Triangle> triangles;
-  for (const Triangle& triangle : test_support::soup(1, 0.0, 1.0, 9))
-    for (double size = 1.0; size > 1e-9; size *= 0.7) triangles.push_back(scaled({triangle}, size).front());
-  return triangles;
-}
-
-/// In one plane across no axis, one over the other.
-std::vector<Triangle> slanted() {
-  std::vector<Triangle> triangles = test_support::soup(60, 1.0, 0.5, 10);
-  const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
-  const glm::dvec3 v = glm::normalize(glm::cross(u, glm::dvec3(0.3, -1, 0.2)));
-  for (Triangle& triangle : triangles)
-    for (glm::dvec3& vertex : triangle.vertex) vertex = u * vertex.x + v * vertex.y;
-  return triangles;
-}
-
-/// A mesh, or as much of it as time allows: rays through one heap of needles or duplicates test all of them.
-std::vector<Triangle> some(test_support::Mesh mesh, std::size_t most) {
-  std::vector<Triangle> triangles = test_support::mesh(mesh);
-  if (triangles.size() > most) triangles.resize(most);
-  return triangles;
-}
-
-std::vector<Triangle> three_times(const std::vector<Triangle>& once) {
-  std::vector<Triangle> triangles;
-  for (int i = 0; i < 3; ++i) triangles.insert(triangles.end(), once.begin(), once.end());
-  return triangles;
-}
-
-/// Lights that share edges, and coplanar triangles on them that share none.
-std::vector<Triangle> decals() {
-  std::vector<Triangle> triangles = slanted();
-  const glm::dvec3 u = triangles[0].vertex[0];
-  const glm::dvec3 v = triangles[1].vertex[1];
-  const glm::dvec3 middle = u * 0.1;
-  for (int i = 0; i < 3; ++i) {
-    const auto rim = [&](int k) { return middle + u * std::cos(2.1 * k) + v * std::sin(2.1 * k); };
-    triangles.push_back(test_support::triangle(middle, rim(i), rim(i + 1)));
-  }
-  return triangles;
-}
-
-std::vector<Triangle> generated(testbench::GeneratedScene kind) {
-  return testbench::generate_scene(kind, 400).triangles;
-}
-
-struct NamedMesh {
-  const char* name;
-  std::function<std::vector<Triangle>()> make;
-};
-
-std::vector<NamedMesh> meshes() {
-  using testbench::GeneratedScene;
-  using namespace test_support;
-  return {{"one", [] { return mesh(Mesh::one); }},
-          {"coplanar", [] { return mesh(Mesh::coplanar); }},
-          {"soup", [] { return some(Mesh::soup, 1000); }},
-          {"needles", [] { return some(Mesh::needles, 100); }},
-          {"duplicates", [] { return some(Mesh::duplicates, 50); }},
-          {"scales", [] { return mesh(Mesh::scales); }},
-          {"huge", [] { return scaled(some(Mesh::huge, 100), 1e-200); }},
-          {"tiny", [] { return scaled(some(Mesh::tiny, 100), 1e230); }},
-          {"large_triangles", [] { return soup(60, 1.0, 1.0, 11); }},
-          {"flats", flats},
-          {"nested", nested},
-          {"slanted", slanted},
-          {"threefold_soup", [] { return three_times(soup(40, 1.0, 0.3, 12)); }},
-          {"far_from_the_origin",
-           [] {
-             std::vector<Triangle> triangles = soup(100, 1.0, 0.2, 13);
-             for (Triangle& triangle : triangles)
-               for (glm::dvec3& vertex : triangle.vertex) vertex += glm::dvec3(1e6, -1e8, 3e7);
-             return triangles;
-           }},
-          {"blob", [] { return generated(GeneratedScene::blob); }},
-          {"sphere_flake", [] { return generated(GeneratedScene::sphere_flake); }},
-          {"stadium", [] { return generated(GeneratedScene::stadium); }},
-          {"long_needles", [] { return generated(GeneratedScene::needles); }}};
-}
-
-/// The last three triangles shine; those without area are dropped, as the loader does.
-Scene scene_of(std::vector<Triangle> triangles) {
-  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), testbench::is_degenerate),
-                  triangles.end());
-  Scene scene;
-  scene.name = "mesh";
-  scene.film = {4, 4};
-  scene.materials = {{"dark", glm::dvec3(0.5), glm::dvec3(0.0)},
-                     {"shining", glm::dvec3(0.0), glm::dvec3(1.0)}};
-  testbench::Box box;
-  for (Triangle& triangle : triangles) {
-    triangle.material = 0;
-    box.include(bounds_of(triangle));
-  }
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, triangles.size()); ++i)
-    triangles[triangles.size() - 1 - i].material = 1;
-  const glm::dvec3 size = box.upper - box.lower;
-  scene.camera.position = box.lower - 0.25 * std::max({size.x, size.y, size.z});
-  scene.triangles = std::move(triangles);
-  return scene;
-}
 
 /// Which triangles the light's own are; the scene's lights stand in the order of its triangles.
 std::vector<std::vector<std::size_t>> lights_of(const Scene& scene) {
@@ -184,7 +53,7 @@ std::string describe(const TreeShape& shape) {
 constexpr int kStacks[] = {0, 1, 2, 8, 32};
 constexpr int kVisits[] = {0, 1, 2, 4};
 
-class TraversalEquality : public testing::TestWithParam<NamedMesh> {
+class TraversalEquality : public testing::TestWithParam<test_support::NamedMesh> {
  protected:
   RaySearch search_{cn::widest_level()};
 };
@@ -262,14 +131,14 @@ TEST_P(TraversalEquality, EveryShadowRaySeesTheLightThatBruteForceSees) {
   expect_the_same_lights_seen(scene_of(GetParam().make()), search_);
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, TraversalEquality, testing::ValuesIn(meshes()),
+INSTANTIATE_TEST_SUITE_P(Meshes, TraversalEquality, testing::ValuesIn(test_support::search_meshes()),
                          [](const auto& suite) { return std::string(suite.param.name); });
 
 /// A ray towards an edge that two triangles of one face share hits both, and a decal may lie between the two,
 /// by rounding: it must not end the ray before the nearer one is found.
 TEST(TraversalOfLights, ThatShareEdgesUnderADecalAreSeenAsByBruteForce) {
   RaySearch search(cn::widest_level());
-  expect_the_same_lights_seen(scene_of(decals()), search);
+  expect_the_same_lights_seen(scene_of(test_support::decals()), search);
 }
 
 /// Rays that find nothing, from a root that leads nowhere.

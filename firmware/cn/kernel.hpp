@@ -30,7 +30,7 @@ template <class Arguments, void (*program)(const Arguments&)>
   strip.observer = memory.observer();
   if (!kObservedSram && memory.observer() != nullptr) memory.observer()->kernel_is_silent();
   for (int first_pe = 0; first_pe < memory.num_pes(); first_pe += kStripLanes) {
-    const std::uint8_t bits = enabled.strip_bits(int(unsigned(first_pe) / kStripLanes));
+    const std::uint8_t bits = enabled.strip_bits(first_pe / kStripLanes);
     if (bits == 0) continue;
     strip.first_pe = first_pe;
     strip.words = memory.strip(first_pe);

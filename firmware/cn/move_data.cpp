@@ -14,15 +14,48 @@
 namespace cn {
 namespace {
 
+constexpr unsigned kAllLanes = (1u << kStripLanes) - 1;
+
+/// Where a strip's pieces lie: side by side in an array.
+class PlacesInArray {
+ public:
+  static constexpr bool kAnywhere = false;
+
+  PlacesInArray(const MonoPlaces& mono, int first_pe, unsigned /*enabled*/, std::uint8_t* memory)
+      : first_(memory + mono[first_pe]), stride_bytes_(mono.stride_bytes) {}
+  std::uint8_t* operator[](int lane) const { return first_ + std::uint64_t(unsigned(lane)) * stride_bytes_; }
+
+ private:
+  std::uint8_t* first_;
+  std::uint64_t stride_bytes_;
+};
+
+/// Or wherever each PE says. Disabled PEs may hold any address; an enabled one's takes its place, so that all
+/// are valid.
+class PlacesOfEach {
+ public:
+  static constexpr bool kAnywhere = true;
+
+  PlacesOfEach(const MonoPlaces& mono, int first_pe, unsigned enabled, std::uint8_t* memory) {
+    const MonoAddress* const address = mono.strip(first_pe);
+    const MonoAddress valid = address[__builtin_ctz(enabled)];
+    for (int lane = 0; lane < kStripLanes; ++lane)
+      place_[lane] = memory + mono.first + ((enabled >> lane) & 1u ? address[lane] : valid);
+  }
+  std::uint8_t* operator[](int lane) const { return place_[lane]; }
+
+ private:
+  std::uint8_t* place_[kStripLanes];
+};
+
 /// One strip's part of a transfer: `words` words between each enabled PE's place and its column of `row`.
+template <class Places>
 struct StripTransfer {
-  std::uint8_t* place[kStripLanes];  ///< valid for every lane, enabled or not
+  Places place;
   std::uint64_t* row;
   int words;
   unsigned enabled;
 };
-
-constexpr unsigned kAllLanes = (1u << kStripLanes) - 1;
 
 // Mono memory holds a PE's words side by side, poly memory a word of a strip's PEs, so a transfer transposes:
 // in registers, kBlockWords words of each PE at a time. The last block's `count` is a template argument
@@ -61,9 +94,8 @@ using Block = Words[8];
   }
 }
 
-template <int count>
-[[gnu::always_inline]] inline void load_block(const StripTransfer& strip, int first_word,
-                                              std::uint64_t* row) {
+template <int count, bool all, class Strip>
+[[gnu::always_inline]] inline void load_block(const Strip& strip, int first_word, std::uint64_t* row) {
   constexpr auto kWords = static_cast<__mmask8>((1u << count) - 1);
   Block block;
 #pragma GCC unroll 8
@@ -72,7 +104,7 @@ template <int count>
     block[lane] = Words(count == 8 ? _mm512_loadu_si512(from) : _mm512_maskz_loadu_epi64(kWords, from));
   }
   transpose(block);
-  if (strip.enabled == kAllLanes) {
+  if constexpr (all) {
 #pragma GCC unroll 8
     for (int i = 0; i < count; ++i) _mm512_storeu_si512(row + i * kStripLanes, __m512i(block[i]));
   } else {
@@ -91,21 +123,16 @@ template <int count>
   }
 }
 
-template <int count>
-[[gnu::always_inline]] inline void save_block(const StripTransfer& strip, int first_word,
-                                              const std::uint64_t* row) {
+template <int count, bool all, class Strip>
+[[gnu::always_inline]] inline void save_block(const Strip& strip, int first_word, const std::uint64_t* row) {
   Block block{};
 #pragma GCC unroll 8
   for (int i = 0; i < count; ++i) block[i] = Words(_mm512_loadu_si512(row + i * kStripLanes));
   transpose(block);
-  if (strip.enabled == kAllLanes) {
 #pragma GCC unroll 8
-    for (int lane = 0; lane < 8; ++lane) store_words<count>(strip.place[lane] + 8 * first_word, block[lane]);
-  } else {
-#pragma GCC unroll 8
-    for (int lane = 0; lane < 8; ++lane)
-      if ((strip.enabled >> lane) & 1u) store_words<count>(strip.place[lane] + 8 * first_word, block[lane]);
-  }
+  for (int lane = 0; lane < 8; ++lane)
+    if (all || ((strip.enabled >> lane) & 1u))
+      store_words<count>(strip.place[lane] + 8 * first_word, block[lane]);
 }
 
 #elif defined(__AVX2__)
@@ -142,12 +169,11 @@ template <int count>
   return _mm256_maskload_epi64(reinterpret_cast<const long long*>(from), words);
 }
 
-template <int count>
-[[gnu::always_inline]] inline void load_block(const StripTransfer& strip, int first_word,
-                                              std::uint64_t* row) {
+template <int count, bool all, class Strip>
+[[gnu::always_inline]] inline void load_block(const Strip& strip, int first_word, std::uint64_t* row) {
   for (int half = 0; half < 2; ++half, row += 4) {
     const unsigned enabled = (strip.enabled >> (4 * half)) & 0xfu;
-    if (enabled == 0) continue;
+    if (!all && enabled == 0) continue;
     Block block;
 #pragma GCC unroll 4
     for (int lane = 0; lane < 4; ++lane)
@@ -157,8 +183,7 @@ template <int count>
     for (int i = 0; i < count; ++i) {
       Words* const to = as_vector(row + i * kStripLanes);
       _mm256_storeu_si256(
-          to, enabled == 0xfu ? block[i]
-                              : _mm256_blendv_epi8(_mm256_loadu_si256(to), block[i], lanes_of_bits(enabled)));
+          to, all ? block[i] : _mm256_blendv_epi8(_mm256_loadu_si256(to), block[i], lanes_of_bits(enabled)));
     }
   }
 }
@@ -177,9 +202,8 @@ template <int count>
     _mm_storel_epi64(reinterpret_cast<__m128i*>(to + 16), _mm256_extracti128_si256(words, 1));
 }
 
-template <int count>
-[[gnu::always_inline]] inline void save_block(const StripTransfer& strip, int first_word,
-                                              const std::uint64_t* row) {
+template <int count, bool all, class Strip>
+[[gnu::always_inline]] inline void save_block(const Strip& strip, int first_word, const std::uint64_t* row) {
   for (int half = 0; half < 2; ++half, row += 4) {
     const unsigned enabled = (strip.enabled >> (4 * half)) & 0xfu;
     Block block{};
@@ -189,7 +213,7 @@ template <int count>
     transpose(block);
 #pragma GCC unroll 4
     for (int lane = 0; lane < 4; ++lane)
-      if ((enabled >> lane) & 1u)
+      if (all || ((enabled >> lane) & 1u))
         store_words<count>(strip.place[4 * half + lane] + 8 * first_word, block[lane]);
   }
 }
@@ -198,32 +222,42 @@ template <int count>
 
 constexpr int kBlockWords = 1;
 
-template <int>
-void load_block(const StripTransfer& strip, int word, std::uint64_t* row) {
+template <int, bool, class Strip>
+void load_block(const Strip& strip, int word, std::uint64_t* row) {
   for (int lane = 0; lane < kStripLanes; ++lane)
     if ((strip.enabled >> lane) & 1u) std::memcpy(&row[lane], strip.place[lane] + 8 * word, 8);
 }
-template <int>
-void save_block(const StripTransfer& strip, int word, const std::uint64_t* row) {
+template <int, bool, class Strip>
+void save_block(const Strip& strip, int word, const std::uint64_t* row) {
   for (int lane = 0; lane < kStripLanes; ++lane)
     if ((strip.enabled >> lane) & 1u) std::memcpy(strip.place[lane] + 8 * word, &row[lane], 8);
 }
 
 #endif
 
-template <Direction direction, int count>
-[[gnu::always_inline]] inline void move_block(const StripTransfer& strip, int first_word) {
+/// @tparam all whether all lanes are enabled, as they mostly are
+template <Direction direction, int count, bool all, class Strip>
+[[gnu::always_inline]] inline void move_block(const Strip& strip, int first_word) {
   std::uint64_t* const row = strip.row + std::size_t(first_word) * kStripLanes;
   if constexpr (direction == Direction::mono_to_poly) {
-    load_block<count>(strip, first_word, row);
+    load_block<count, all>(strip, first_word, row);
   } else {
-    save_block<count>(strip, first_word, row);
+    save_block<count, all>(strip, first_word, row);
   }
+}
+
+/// @tparam tail words beyond whole blocks
+template <Direction direction, int tail, bool all, class Strip>
+[[gnu::always_inline]] inline void move_strip(const Strip& strip) {
+  const int in_blocks = strip.words - tail;
+  for (int w = 0; w < in_blocks; w += kBlockWords) move_block<direction, kBlockWords, all>(strip, w);
+  if constexpr (tail > 0) move_block<direction, tail, all>(strip, in_blocks);
 }
 
 /// Whether the enabled lanes' pieces follow each other without overlapping; their words may then be stored in
 /// any order.
-bool is_ascending(const StripTransfer& strip) {
+template <class Strip>
+bool is_ascending(const Strip& strip) {
   const std::uint8_t* end = nullptr;
   bool ascending = true;
   for (int lane = 0; lane < kStripLanes; ++lane) {
@@ -235,27 +269,13 @@ bool is_ascending(const StripTransfer& strip) {
 }
 
 /// PEs are served in ascending order: of two that save to the same word, the higher one's is kept.
-void save_in_pe_order(const StripTransfer& strip) {
+template <class Strip>
+void save_in_pe_order(const Strip& strip) {
   for (int lane = 0; lane < kStripLanes; ++lane)
     if ((strip.enabled >> lane) & 1u)
       for (int w = 0; w < strip.words; ++w)
         std::memcpy(strip.place[lane] + 8 * w, &strip.row[std::size_t(w) * kStripLanes + std::size_t(lane)],
                     8);
-}
-
-/// Disabled PEs may hold any address; an enabled one's takes its place.
-[[gnu::always_inline]] inline void find_places(const MonoPlaces& mono, int first_pe, std::uint8_t* memory,
-                                               StripTransfer& strip) {
-  if (mono.by_pe == nullptr) {
-    std::uint8_t* const first = memory + mono[first_pe];
-    for (int lane = 0; lane < kStripLanes; ++lane)
-      strip.place[lane] = first + std::uint64_t(lane) * mono.stride_bytes;
-    return;
-  }
-  const MonoAddress* const address = mono.strip(first_pe);
-  const MonoAddress valid = address[__builtin_ctz(strip.enabled)];
-  for (int lane = 0; lane < kStripLanes; ++lane)
-    strip.place[lane] = memory + mono.first + ((strip.enabled >> lane) & 1u ? address[lane] : valid);
 }
 
 /// Records of rays lie all over mono memory; what the next strip loads is on its way while this one's is
@@ -272,37 +292,38 @@ void save_in_pe_order(const StripTransfer& strip) {
   }
 }
 
-/// @tparam tail words beyond whole blocks
-template <Direction direction, int tail>
+template <Direction direction, int tail, class Places>
 void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
-  StripTransfer strip;
-  strip.words = transfer.poly.size_bytes / 8;
-  const bool may_overlap = direction == Direction::poly_to_mono &&
-                           (transfer.mono.by_pe != nullptr ||
-                            transfer.mono.stride_bytes < std::uint64_t(transfer.poly.size_bytes));
+  constexpr bool loads = direction == Direction::mono_to_poly;
+  const bool may_overlap =
+      !loads && (Places::kAnywhere || transfer.mono.stride_bytes < std::uint64_t(transfer.poly.size_bytes));
   const int num_pes = poly.num_pes();
-  const int in_blocks = strip.words - tail;
   for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {
-    strip.enabled = transfer.enabled.strip_bits(first_pe / kStripLanes);
-    if (strip.enabled == 0) continue;
-    if (direction == Direction::mono_to_poly && transfer.mono.by_pe != nullptr &&
-        first_pe + kStripLanes < num_pes)
+    const unsigned enabled = transfer.enabled.strip_bits(first_pe / kStripLanes);
+    if (enabled == 0) continue;
+    if (loads && Places::kAnywhere && first_pe + kStripLanes < num_pes)
       prefetch_strip(transfer, first_pe + kStripLanes, mono);
-    strip.row = poly.strip(first_pe, transfer.poly.offset_bytes);
-    find_places(transfer.mono, first_pe, mono, strip);
+    const StripTransfer<Places> strip{Places(transfer.mono, first_pe, enabled, mono),
+                                      poly.strip(first_pe, transfer.poly.offset_bytes),
+                                      transfer.poly.size_bytes / 8, enabled};
     if (may_overlap && !is_ascending(strip)) {
       save_in_pe_order(strip);
-      continue;
+    } else if (enabled == kAllLanes) {
+      move_strip<direction, tail, true>(strip);
+    } else {
+      move_strip<direction, tail, false>(strip);
     }
-    for (int w = 0; w < in_blocks; w += kBlockWords) move_block<direction, kBlockWords>(strip, w);
-    if constexpr (tail > 0) move_block<direction, tail>(strip, in_blocks);
   }
 }
 
 template <Direction direction, int tail = 0>
 void move_with_tail(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
   if (transfer.poly.size_bytes / 8 % kBlockWords == tail) {
-    move_strips<direction, tail>(transfer, poly, mono);
+    if (transfer.mono.by_pe == nullptr) {
+      move_strips<direction, tail, PlacesInArray>(transfer, poly, mono);
+    } else {
+      move_strips<direction, tail, PlacesOfEach>(transfer, poly, mono);
+    }
   } else if constexpr (tail + 1 < kBlockWords) {
     move_with_tail<direction, tail + 1>(transfer, poly, mono);
   }

@@ -65,6 +65,28 @@ inline void flush_issued() {
     strip.node->counts.by_class[i] += strip.issued.by_class[i];
 }
 
+/// Whether another strip was here before, so that what this one issues is known.
+inline bool issue_is_known() {
+  return strip.node->reached;
+}
+
+/// Runs `body` and issues what it issues so many times. It enters no data-dependent region.
+template <class Body>
+inline void issue_times(std::uint64_t times, Body&& body) {
+  const StripCounts before = strip.issued;
+  body();
+  for (std::size_t i = 0; i < kInstructionClasses; ++i)
+    strip.issued.by_class[i] = before.by_class[i] + times * (strip.issued.by_class[i] - before.by_class[i]);
+}
+
+/// Runs `body` for what it computes: what the PEs do for it is issued elsewhere.
+template <class Body>
+inline void issue_nothing(Body&& body) {
+  const StripCounts before = strip.issued;
+  body();
+  strip.issued = before;
+}
+
 /// Runs `body` as the given iteration of a data-dependent region of the current node.
 template <class Body>
 inline void run_node(std::size_t region, std::size_t iteration, Body&& body) {

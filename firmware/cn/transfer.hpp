@@ -27,17 +27,6 @@ struct Transfer {
   Label label{};
 };
 
-/// Every bit that is set in the place of any PE, enabled or not. At least as large as each place and a
-/// multiple of 2^k only if each is: checks that pass on it need not look at PEs one by one.
-inline std::uint64_t bits_of_places(const Transfer& transfer, int num_pes) {
-  std::uint64_t bits = 0;
-  for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {
-    const MonoAddress* const places = transfer.mono.strip(first_pe);
-    for (int lane = 0; lane < kStripLanes; ++lane) bits |= transfer.mono.first + places[lane];
-  }
-  return bits;
-}
-
 /// The first enabled PE whose place is not `allowed(place)`, or -1.
 template <class Allowed>
 int first_pe_not(const Transfer& transfer, int num_pes, Allowed&& allowed) {

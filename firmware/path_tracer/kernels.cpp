@@ -5,6 +5,7 @@
 #include "firmware/path_tracer/light_sampling.hpp"
 #include "firmware/path_tracer/places.hpp"
 #include "firmware/path_tracer/sampler.hpp"
+#include "firmware/path_tracer/sifted_search.hpp"
 
 namespace path_tracer {
 
@@ -21,7 +22,8 @@ void intersect(const IntersectArguments& arguments) {
   const RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
                         arguments.ray.get(&RayRecord::left_face)};
   Nearest nearest;
-  search(ray, arguments.reach, MonoTriangles{arguments.triangles, arguments.triangle_count}, nearest);
+  search(ray, arguments.reach,
+         SiftedTriangles{{arguments.triangles, arguments.triangle_count}, arguments.sieve}, nearest);
   write_hit(nearest, ray.origin, ray.direction, arguments.hit);
   arguments.surface_place.write(place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord)));
   cn::keep(nearest.number >= 0, *arguments.hit_something);

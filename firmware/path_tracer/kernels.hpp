@@ -4,6 +4,7 @@
 #include "firmware/cn/level.hpp"
 #include "firmware/path_tracer/program.hpp"
 #include "firmware/path_tracer/traversal_kernels.hpp"
+#include "firmware/path_tracer/triangle_sieve.hpp"
 
 /// The poly programs of the path tracer: their arguments and the table of entry points. Poly pointers name
 /// SRAM, plain pointers mono memory that the control unit reads, `LaneMask*` the conditions a kernel leaves
@@ -15,7 +16,8 @@ struct IntersectArguments {
   PolyPointer<RayRecord> ray;
   const TriangleRecord* triangles = nullptr;
   int triangle_count = 0;
-  double reach = 0;  ///< of the scene (triangle_record.hpp)
+  const TriangleSieve* sieve = nullptr;  ///< of those triangles, for the host
+  double reach = 0;                      ///< of the scene (triangle_record.hpp)
   MonoAddress surfaces = 0;
   PolyPointer<HitRecord> hit;
   PolyField<MonoAddress> surface_place;  ///< kept for the intersection stage's gather

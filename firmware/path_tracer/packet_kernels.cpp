@@ -36,8 +36,8 @@ struct Slabs4 {
   poly4<double> entry[kAxes];
   poly4<double> exit[kAxes];
 
-  /// The same numbers as BoxRay makes. Nodes are the same for all PEs, but which side of a box
-  /// is near is not, so that both are computed before they are told apart.
+  /// The same numbers as BoxRay makes. Nodes are the same for all PEs, but which side of a box is near is
+  /// not, so that both are computed before they are told apart.
   Slabs4(const MonoNode::Four& four, const Point3& origin, const Direction3& minus_inverse) {
     for (int axis = 0; axis < kAxes; ++axis) {
       const poly<double>& scale = component(minus_inverse, axis);

@@ -16,6 +16,9 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.triangle_count = context_.layout.triangle_count;
   arguments.triangles =
       context_.machine.read_mono(context_.layout.triangles, std::size_t(arguments.triangle_count));
+  if (sieve_.triangles.empty())
+    sieve_ = make_sieve(arguments.triangles, arguments.triangle_count, context_.layout.reach);
+  arguments.sieve = &sieve_;
   arguments.reach = context_.layout.reach;
   arguments.surfaces = context_.layout.surfaces.address;
   arguments.hit = PolyPointer<HitRecord>(context_.saves.buffer(step));

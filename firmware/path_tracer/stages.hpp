@@ -19,6 +19,9 @@ class RayStage : public Stage {
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
+
+ private:
+  TriangleSieve sieve_;  ///< made when the triangles are read first
 };
 
 /// Intersection bin. A segment gets its shading details, roulette, new direction and shadow ray; a shadow ray

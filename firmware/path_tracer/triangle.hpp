@@ -131,6 +131,16 @@ mask comes_before(const Crossing& crossing, const poly<std::int32_t>& number, co
   return (left < right) | ((left == right) & (left_error < right_error)) | (same & (number < nearest.number));
 }
 
+/// Takes `triangle` where it is a candidate and nearer than `nearest`; returns where it is as near.
+template <class Found, class Triangle>
+mask take_nearer(const Crossing& crossing, const Triangle& triangle, const mask& candidate, Found& nearest) {
+  const poly<double> left = crossing.distance * cn::abs(nearest.determinant);
+  const poly<double> right = nearest.distance * crossing.size;
+  const mask as_near = candidate & (left == right);
+  cn::poly_if(candidate & (left < right), [&] { nearest.take(crossing, triangle); });
+  return as_near;
+}
+
 /// The search without what rounding may do: of the lanes that it returns, two crossings were too close to
 /// tell which is nearer.
 template <class Found, class Triangles>
@@ -139,12 +149,9 @@ mask search_fast(const RayOperands& ray, const Triangles& triangles, Found& near
   for (int i = 0; i < triangles.count; ++i) {
     const auto& triangle = triangles(i);
     const Crossing crossing(ray, triangle);
-    const poly<double> left = crossing.distance * cn::abs(nearest.determinant);
-    const poly<double> right = nearest.distance * crossing.size;
     const mask candidate =
         triangles.where_there(i, crossing.inside & (ray.left_face != poly<std::int32_t>(triangle.face)));
-    tied = tied | (candidate & (left == right));
-    cn::poly_if(candidate & (left < right), [&] { nearest.take(crossing, triangle); });
+    tied = tied | take_nearer(crossing, triangle, candidate, nearest);
   }
   return tied;
 }

@@ -53,7 +53,7 @@ void run(benchmark::State& state, KernelBench& bench, const cn::Kernel<Arguments
       operations * kPes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void intersect(benchmark::State& state, Level level) {
+void intersect(benchmark::State& state, Level level, bool sifted) {
   KernelBench bench;
   LaneMask hit;
   IntersectArguments arguments;
@@ -62,6 +62,8 @@ void intersect(benchmark::State& state, Level level) {
   arguments.surface_place = {1024};
   arguments.triangles = bench.triangles.data();
   arguments.triangle_count = kTriangles;
+  const TriangleSieve sieve = make_sieve(bench.triangles.data(), kTriangles, kReach);
+  if (sifted) arguments.sieve = &sieve;
   arguments.reach = kReach;
   arguments.hit_something = &hit;
   run(state, bench, kernels(level).intersect, arguments, kTriangles);
@@ -105,7 +107,9 @@ struct Registration {
       if (!is_executable(level)) continue;
       using std::string;
       benchmark::RegisterBenchmark((string("intersect, each triangle and PE/") + name).c_str(), intersect,
-                                   level);
+                                   level, false);
+      benchmark::RegisterBenchmark((string("intersect, sifted, each triangle and PE/") + name).c_str(),
+                                   intersect, level, true);
       benchmark::RegisterBenchmark((string("scatter, philox, no light, each PE/") + name).c_str(), scatter,
                                    level, Sampler::philox, false);
       benchmark::RegisterBenchmark((string("scatter, philox, light by area, each PE/") + name).c_str(),

@@ -133,7 +133,8 @@ SearchHit RaySearch::hit_of(int pe, const Offsets& at) const {
   return found;
 }
 
-std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const std::vector<RayRecord>& rays) {
+std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const std::vector<RayRecord>& rays,
+                                              const path_tracer::TriangleSieve* sieve) {
   const Offsets at(scene.shape);
   scramble(at.end);
   const int count = static_cast<int>(rays.size());
@@ -143,6 +144,7 @@ std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const st
   arguments.ray = PolyPointer<RayRecord>(at.ray);
   arguments.triangles = scene.triangles.data();
   arguments.triangle_count = static_cast<int>(scene.triangles.size());
+  arguments.sieve = sieve;
   arguments.reach = scene.reach;
   arguments.surfaces = kSurfaces;
   arguments.hit = PolyPointer<HitRecord>(at.hit);

@@ -39,14 +39,18 @@ class RaySearch {
   explicit RaySearch(path_tracer::Level level);
 
   /// @param rays as many as there are PEs, or fewer
+  /// @param sieve of the scene's triangles, or nothing
   std::vector<SearchHit> brute_force(const SearchScene& scene,
-                                     const std::vector<path_tracer::RayRecord>& rays);
+                                     const std::vector<path_tracer::RayRecord>& rays,
+                                     const path_tracer::TriangleSieve* sieve = nullptr);
 
   /// Half of the rays enter when the others are on their way. After each turn every ray goes on in another
   /// PE, as from a bin, if they `move`.
   std::vector<SearchHit> through_tree(const SearchScene& scene,
                                       const std::vector<path_tracer::QueuedRay>& rays, bool move);
 
+  /// By the latest kernel.
+  const cn::IssueTree& issued() const { return issued_; }
   std::uint64_t turns() const { return turns_; }  ///< of all rays so far
 
  private:

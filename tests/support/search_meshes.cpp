@@ -1,0 +1,138 @@
+#include "tests/support/search_meshes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "testbench/bvh/bvh.hpp"
+#include "testbench/scene/generated_scene.hpp"
+#include "testbench/scene/mesh.hpp"
+#include "tests/support/meshes.hpp"
+
+namespace test_support {
+
+using testbench::Scene;
+using testbench::Triangle;
+
+namespace {
+
+std::vector<Triangle> scaled(std::vector<Triangle> triangles, double factor) {
+  for (Triangle& triangle : triangles)
+    for (glm::dvec3& vertex : triangle.vertex) vertex *= factor;
+  return triangles;
+}
+
+/// Rectangles across the axes, some side by side, some through each other; all boxes are flat.
+std::vector<Triangle> flats() {
+  std::vector<Triangle> triangles;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 40; ++i) {
+      glm::dvec3 corner(0.0), u(0.0), v(0.0);
+      corner[axis] = i / 8;
+      u[(axis + 1) % 3] = 1.0;
+      v[(axis + 2) % 3] = 1.0;
+      corner += u * double(i % 8) + v * double(i % 5);
+      triangles.push_back(triangle(corner, corner + u, corner + u + v));
+      triangles.push_back(triangle(corner, corner + u + v, corner + v));
+    }
+  return triangles;
+}
+
+/// One around the other, all about one point.
+std::vector<Triangle> nested() {
+  std::vector<Triangle> triangles;
+  for (const Triangle& triangle : soup(1, 0.0, 1.0, 9))
+    for (double size = 1.0; size > 1e-9; size *= 0.7) triangles.push_back(scaled({triangle}, size).front());
+  return triangles;
+}
+
+/// In one plane across no axis, one over the other.
+std::vector<Triangle> slanted() {
+  std::vector<Triangle> triangles = soup(60, 1.0, 0.5, 10);
+  const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
+  const glm::dvec3 v = glm::normalize(glm::cross(u, glm::dvec3(0.3, -1, 0.2)));
+  for (Triangle& triangle : triangles)
+    for (glm::dvec3& vertex : triangle.vertex) vertex = u * vertex.x + v * vertex.y;
+  return triangles;
+}
+
+/// A mesh, or as much of it as time allows: rays through one heap of needles or duplicates test all of them.
+std::vector<Triangle> some(Mesh mesh, std::size_t most) {
+  std::vector<Triangle> triangles = test_support::mesh(mesh);
+  if (triangles.size() > most) triangles.resize(most);
+  return triangles;
+}
+
+std::vector<Triangle> three_times(const std::vector<Triangle>& once) {
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < 3; ++i) triangles.insert(triangles.end(), once.begin(), once.end());
+  return triangles;
+}
+
+std::vector<Triangle> generated(testbench::GeneratedScene kind) {
+  return testbench::generate_scene(kind, 400).triangles;
+}
+
+}  // namespace
+
+std::vector<Triangle> decals() {
+  std::vector<Triangle> triangles = slanted();
+  const glm::dvec3 u = triangles[0].vertex[0];
+  const glm::dvec3 v = triangles[1].vertex[1];
+  const glm::dvec3 middle = u * 0.1;
+  for (int i = 0; i < 3; ++i) {
+    const auto rim = [&](int k) { return middle + u * std::cos(2.1 * k) + v * std::sin(2.1 * k); };
+    triangles.push_back(triangle(middle, rim(i), rim(i + 1)));
+  }
+  return triangles;
+}
+
+std::vector<NamedMesh> search_meshes() {
+  using testbench::GeneratedScene;
+  return {{"one", [] { return mesh(Mesh::one); }},
+          {"coplanar", [] { return mesh(Mesh::coplanar); }},
+          {"soup", [] { return some(Mesh::soup, 1000); }},
+          {"needles", [] { return some(Mesh::needles, 100); }},
+          {"duplicates", [] { return some(Mesh::duplicates, 50); }},
+          {"scales", [] { return mesh(Mesh::scales); }},
+          {"huge", [] { return scaled(some(Mesh::huge, 100), 1e-200); }},
+          {"tiny", [] { return scaled(some(Mesh::tiny, 100), 1e230); }},
+          {"large_triangles", [] { return soup(60, 1.0, 1.0, 11); }},
+          {"flats", flats},
+          {"nested", nested},
+          {"slanted", slanted},
+          {"threefold_soup", [] { return three_times(soup(40, 1.0, 0.3, 12)); }},
+          {"far_from_the_origin",
+           [] {
+             std::vector<Triangle> triangles = soup(100, 1.0, 0.2, 13);
+             for (Triangle& triangle : triangles)
+               for (glm::dvec3& vertex : triangle.vertex) vertex += glm::dvec3(1e6, -1e8, 3e7);
+             return triangles;
+           }},
+          {"blob", [] { return generated(GeneratedScene::blob); }},
+          {"sphere_flake", [] { return generated(GeneratedScene::sphere_flake); }},
+          {"stadium", [] { return generated(GeneratedScene::stadium); }},
+          {"long_needles", [] { return generated(GeneratedScene::needles); }}};
+}
+
+Scene scene_of(std::vector<Triangle> triangles) {
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), testbench::is_degenerate),
+                  triangles.end());
+  Scene scene;
+  scene.name = "mesh";
+  scene.film = {4, 4};
+  scene.materials = {{"dark", glm::dvec3(0.5), glm::dvec3(0.0)},
+                     {"shining", glm::dvec3(0.0), glm::dvec3(1.0)}};
+  testbench::Box box;
+  for (Triangle& triangle : triangles) {
+    triangle.material = 0;
+    box.include(bounds_of(triangle));
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, triangles.size()); ++i)
+    triangles[triangles.size() - 1 - i].material = 1;
+  const glm::dvec3 size = box.upper - box.lower;
+  scene.camera.position = box.lower - 0.25 * std::max({size.x, size.y, size.z});
+  scene.triangles = std::move(triangles);
+  return scene;
+}
+
+}  // namespace test_support

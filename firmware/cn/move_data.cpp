@@ -3,6 +3,7 @@
 
 #include <immintrin.h>
 
+#include <cstdint>
 #include <cstring>
 
 #include "firmware/cn/transfer.hpp"
@@ -15,6 +16,14 @@ namespace cn {
 namespace {
 
 constexpr unsigned kAllLanes = (1u << kStripLanes) - 1;
+
+/// `if_set` or `otherwise`, by arithmetic: of ?: GCC makes branches here, which nobody can predict.
+template <class T>
+T* chosen(unsigned lanes, int lane, T* if_set, T* otherwise) {
+  const auto bits = reinterpret_cast<std::uintptr_t>(otherwise);
+  const std::uintptr_t mask = -std::uintptr_t{(lanes >> lane) & 1u};
+  return reinterpret_cast<T*>(bits ^ ((bits ^ reinterpret_cast<std::uintptr_t>(if_set)) & mask));
+}
 
 /// Where a strip's pieces lie: side by side in an array.
 class PlacesInArray {
@@ -38,9 +47,25 @@ class PlacesOfEach {
 
   PlacesOfEach(const MonoPlaces& mono, int first_pe, unsigned enabled, std::uint8_t* memory) {
     const MonoAddress* const address = mono.strip(first_pe);
-    const MonoAddress valid = address[__builtin_ctz(enabled)];
+    std::uint8_t* const first = memory + mono.first;
+    std::uint8_t* const valid = first + address[__builtin_ctz(enabled)];
     for (int lane = 0; lane < kStripLanes; ++lane)
-      place_[lane] = memory + mono.first + ((enabled >> lane) & 1u ? address[lane] : valid);
+      place_[lane] = chosen(enabled, lane, first + address[lane], valid);
+  }
+  std::uint8_t* operator[](int lane) const { return place_[lane]; }
+
+ private:
+  std::uint8_t* place_[kStripLanes];
+};
+
+/// The same, but for PEs that save nothing a place where nothing matters: to store there is cheaper than to
+/// ask a question whose answer nobody can predict.
+class PlacesOrNowhere {
+ public:
+  template <class Places>
+  PlacesOrNowhere(const Places& places, unsigned enabled, std::uint8_t* nowhere) {
+    for (int lane = 0; lane < kStripLanes; ++lane)
+      place_[lane] = chosen(enabled, lane, places[lane], nowhere);
   }
   std::uint8_t* operator[](int lane) const { return place_[lane]; }
 
@@ -261,9 +286,9 @@ bool is_ascending(const Strip& strip) {
   const std::uint8_t* end = nullptr;
   bool ascending = true;
   for (int lane = 0; lane < kStripLanes; ++lane) {
-    if (((strip.enabled >> lane) & 1u) == 0) continue;
-    ascending &= end <= strip.place[lane];
-    end = strip.place[lane] + 8 * strip.words;
+    const std::uint8_t* const place = chosen<const std::uint8_t>(strip.enabled, lane, strip.place[lane], end);
+    ascending &= end <= place;
+    end = chosen<const std::uint8_t>(strip.enabled, lane, place + 8 * strip.words, end);
   }
   return ascending;
 }
@@ -281,16 +306,20 @@ void save_in_pe_order(const Strip& strip) {
 /// Records of rays lie all over mono memory; what the next strip loads is on its way while this one's is
 /// moved.
 [[gnu::always_inline]] inline void prefetch_strip(const Transfer& transfer, int first_pe,
-                                                  const std::uint8_t* mono) {
+                                                  std::uint8_t* mono) {
   constexpr int kLineBytes = 64;
-  const MonoAddress* const address = transfer.mono.strip(first_pe);
-  for (unsigned lanes = transfer.enabled.strip_bits(first_pe / kStripLanes); lanes != 0; lanes &= lanes - 1) {
-    const std::uint8_t* const place = mono + transfer.mono.first + address[__builtin_ctz(lanes)];
-    const std::uint8_t* const end = place + transfer.poly.size_bytes;
-    for (const std::uint8_t* line = place; line < end; line += kLineBytes) __builtin_prefetch(line);
-    __builtin_prefetch(end - 1);
+  const unsigned enabled = transfer.enabled.strip_bits(first_pe / kStripLanes);
+  if (enabled == 0) return;
+  const PlacesOfEach places(transfer.mono, first_pe, enabled, mono);
+  const int last = transfer.poly.size_bytes - 1;
+  for (int lane = 0; lane < kStripLanes; ++lane) {
+    for (int line = 0; line < last; line += kLineBytes) __builtin_prefetch(places[lane] + line);
+    __builtin_prefetch(places[lane] + last);
   }
 }
+
+/// Of the largest record for which there is such a place.
+constexpr int kNowhereBytes = 512;
 
 template <Direction direction, int tail, class Places>
 void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
@@ -310,6 +339,10 @@ void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono)
       save_in_pe_order(strip);
     } else if (enabled == kAllLanes) {
       move_strip<direction, tail, true>(strip);
+    } else if (!loads && transfer.poly.size_bytes <= kNowhereBytes) {
+      std::uint8_t nowhere[kNowhereBytes];
+      move_strip<direction, tail, true>(
+          StripTransfer<PlacesOrNowhere>{{strip.place, enabled, nowhere}, strip.row, strip.words, enabled});
     } else {
       move_strip<direction, tail, false>(strip);
     }

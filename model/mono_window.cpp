@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "firmware/cn/machine.hpp"
+#include "firmware/cn/offset_bits.hpp"
 #include "model/payload.hpp"
 
 namespace model {
@@ -41,6 +42,11 @@ void MonoWindow::check_span(const cn::Transfer& transfer, std::uint64_t request)
 
 void MonoWindow::check_places(const cn::Transfer& transfer, std::uint64_t request) const {
   const auto bytes = std::uint64_t(transfer.poly.size_bytes);
+  if (transfer.mono.by_pe != nullptr && bytes <= size_bytes_) {
+    const std::uint64_t highest = cn::offset_bits(transfer.mono, poly_.num_pes());
+    if (transfer.mono.first <= size_bytes_ - bytes && highest <= size_bytes_ - bytes - transfer.mono.first)
+      return;
+  }
   const int pe = cn::first_pe_not(transfer, poly_.num_pes(), [&](cn::MonoAddress address) {
     return address <= size_bytes_ && bytes <= size_bytes_ - address;
   });

@@ -1,5 +1,7 @@
 #include "firmware/cn/machine.hpp"
 
+#include "firmware/cn/offset_bits.hpp"
+
 namespace cn {
 namespace {
 
@@ -9,15 +11,6 @@ void check_span(const PolySpan& span, const PolyMemory& memory) {
     throw MachineFault("transfer of " + std::to_string(span.size_bytes) + " bytes at poly offset " +
                        std::to_string(span.offset_bytes) + " leaves the " + std::to_string(capacity) +
                        " bytes of poly SRAM");
-}
-
-/// Every bit that is set in the offset of any PE, enabled or not: a multiple of 8 only if each is, and then
-/// no PE need be looked at by itself.
-std::uint64_t bits_of_offsets(const MonoPlaces& places, int num_pes) {
-  std::uint64_t bits = 0;
-  for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes)
-    for (int lane = 0; lane < kStripLanes; ++lane) bits |= places.strip(first_pe)[lane];
-  return bits;
 }
 
 void check_alignment(const Transfer& transfer, int num_pes) {
@@ -32,7 +25,7 @@ void check_alignment(const Transfer& transfer, int num_pes) {
     if (transfer.mono.stride_bytes % 8 != 0) fault("stride", transfer.mono.stride_bytes);
     return;
   }
-  if ((transfer.mono.first | bits_of_offsets(transfer.mono, num_pes)) % 8 == 0) return;
+  if ((transfer.mono.first | offset_bits(transfer.mono, num_pes)) % 8 == 0) return;
   const int pe = first_pe_not(transfer, num_pes, [](MonoAddress place) { return place % 8 == 0; });
   if (pe >= 0) fault("mono address of PE " + std::to_string(pe), transfer.mono[pe]);
 }

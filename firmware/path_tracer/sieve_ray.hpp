@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "firmware/path_tracer/triangle.hpp"
 #include "firmware/path_tracer/triangle_sieve.hpp"
 
@@ -127,7 +130,13 @@ class SieveRay {
   }
 
   unsigned may_cross(const SieveTriangle& triangle, int i) const {
-    using namespace sieve_detail;
+    using sieve_detail::Bits;
+    using sieve_detail::FloatChunk;
+    using sieve_detail::greater;
+    using sieve_detail::lesser;
+    using sieve_detail::same;
+    using sieve_detail::same_bits;
+    using sieve_detail::signs;
     const Vector vertex = same(triangle.vertex);
     const Vector to_vertex{vertex.x - origin_[i].x, vertex.y - origin_[i].y, vertex.z - origin_[i].z};
     const Vector back = same(triangle.back);
@@ -144,7 +153,7 @@ class SieveRay {
     // Negative where the ray passes by for certain.
     const FloatChunk crossing = greater(within, minus_size) + same(kMargin);
     const Bits leaves = Bits(left_face_.chunk[i]) == same_bits(triangle.face);
-    return ~signs(FloatChunk(Bits(crossing) | leaves)) & ((1u << kLanesOfChunk) - 1);
+    return ~signs(FloatChunk(Bits(crossing) | leaves)) & ((1u << sieve_detail::kLanesOfChunk) - 1);
   }
 
   Vector origin_[sieve_detail::Floats::kChunks];

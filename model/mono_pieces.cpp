@@ -148,7 +148,8 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   }
   if (rules.consolidate_equal_addresses && !write()) consolidate();
   const auto bytes = std::uint64_t(bytes_per_pe_);
-  const std::uint64_t packets_bytes = whole_packets(bytes, rules.packet_bytes);
+  const std::uint64_t packets_of_one = packets_of(bytes, rules.packet_bytes);
+  const std::uint64_t packets_bytes = packets_of_one * rules.packet_bytes.value();
   const cn::MonoAddress* const address = addresses_.data();
   int misaligned = 0;
   cn::MonoAddress last = 0;
@@ -158,7 +159,6 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   }
   misaligned_ = misaligned;
   if (pieces_ > 0) end_ = end_of(last, bytes);
-  const std::uint64_t packets_of_one = packets_bytes / rules.packet_bytes.value();
   Run* run = runs_.storage_.data();
   for (int i = 0; i < pieces_; ++run) {
     const int first = i;

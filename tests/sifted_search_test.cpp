@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/native_example.hpp"
 #include "tests/support/search_meshes.hpp"
 #include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
@@ -60,16 +61,9 @@ TEST_P(SiftedSearch, FindsAndIssuesWhatATestOfEveryTriangleDoes) {
   EXPECT_GT(hits, int(rays_in_all) / 20);
 }
 
-std::vector<cn::Level> levels() {
-  std::vector<cn::Level> levels;
-  for (const cn::Level level : {cn::Level::x86_64_v2, cn::Level::x86_64_v3, cn::Level::x86_64_v4})
-    if (level <= cn::widest_level()) levels.push_back(level);
-  return levels;
-}
-
 INSTANTIATE_TEST_SUITE_P(Meshes, SiftedSearch,
                          testing::Combine(testing::ValuesIn(test_support::search_meshes()),
-                                          testing::ValuesIn(levels())),
+                                          testing::ValuesIn(test_support::levels())),
                          [](const auto& suite) {
                            return std::string(std::get<0>(suite.param).name) + "_v" +
                                   std::to_string(2 + int(std::get<1>(suite.param)));

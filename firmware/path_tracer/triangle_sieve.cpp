@@ -20,9 +20,7 @@ std::array<float, 3> narrow(const vec3<double>& v, int exponent) {
 SieveTriangle sieve_triangle(const TriangleRecord& triangle, const vec3<double>& anchor, int unit_exponent) {
   const double largest = std::max(largest_component(triangle.edge1), largest_component(triangle.edge2));
   const int edge_exponent = largest > 0 ? -std::ilogb(largest) - 1 : 0;
-  const vec3<double> from_anchor{triangle.vertex.x - anchor.x, triangle.vertex.y - anchor.y,
-                                 triangle.vertex.z - anchor.z};
-  return {narrow(from_anchor, unit_exponent), narrow(triangle.edge1 * -1.0, edge_exponent),
+  return {narrow(triangle.vertex - anchor, unit_exponent), narrow(triangle.edge1 * -1.0, edge_exponent),
           narrow(triangle.edge2, edge_exponent), narrow(triangle.back, edge_exponent + unit_exponent),
           triangle.face};
 }

@@ -4,16 +4,16 @@
 #include <memory>
 #include <systemc>
 
-#include "model/chip_config.hpp"
-#include "model/clear_connect.hpp"
-#include "model/clock_domain.hpp"
-#include "model/control_unit.hpp"
-#include "model/dma_engine.hpp"
-#include "model/host_link.hpp"
-#include "model/mono_ddr.hpp"
-#include "model/pe_array.hpp"
-#include "model/poly_sram.hpp"
-#include "model/timing_style.hpp"
+#include "model/config/chip_config.hpp"
+#include "model/config/timing_style.hpp"
+#include "model/control/control_unit.hpp"
+#include "model/dma/dma_engine.hpp"
+#include "model/host_link/host_link.hpp"
+#include "model/memory/mono_ddr.hpp"
+#include "model/network/clear_connect.hpp"
+#include "model/pe_array/pe_array.hpp"
+#include "model/pe_array/poly_sram.hpp"
+#include "model/time/clock_domain.hpp"
 
 namespace model {
 

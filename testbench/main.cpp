@@ -4,7 +4,7 @@
 #include <systemc>
 
 #include "testbench/commands/commands.hpp"
-#include "testbench/error.hpp"
+#include "testbench/system/error.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include "firmware/cn/machine.hpp"
 
-#include "firmware/cn/offset_bits.hpp"
+#include "firmware/cn/language/offset_bits.hpp"
 
 namespace cn {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "firmware/cn/kernel.hpp"
-#include "firmware/cn/label.hpp"
-#include "firmware/cn/transfer.hpp"
+#include "firmware/cn/chip/label.hpp"
+#include "firmware/cn/chip/transfer.hpp"
+#include "firmware/cn/language/kernel.hpp"
 
 namespace cn {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/cn/control.hpp"
+#include "firmware/cn/language/control.hpp"
 #include "firmware/examples/dgemm.hpp"
 
 namespace examples {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/cn/float_bits.hpp"
+#include "firmware/cn/language/float_bits.hpp"
 #include "firmware/examples/fft.hpp"
 
 namespace examples {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "firmware/cn/kernel.hpp"
-#include "firmware/cn/level.hpp"
-#include "firmware/cn/mono_memory.hpp"
-#include "firmware/cn/poly4.hpp"
+#include "firmware/cn/chip/mono_memory.hpp"
+#include "firmware/cn/language/kernel.hpp"
+#include "firmware/cn/language/poly4.hpp"
+#include "firmware/cn/simd/level.hpp"
 
 /// Small programs that show other uses of the chip than ray tracing. Here: what their poly programs are
 /// given.

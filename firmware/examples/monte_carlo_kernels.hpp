@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/cn/math.hpp"
+#include "firmware/cn/language/math.hpp"
 #include "firmware/examples/kernels.hpp"
 
 namespace examples {

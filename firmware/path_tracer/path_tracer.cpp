@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "firmware/path_tracer/packet_stage.hpp"
-#include "firmware/path_tracer/refill.hpp"
-#include "firmware/path_tracer/shared_treelets.hpp"
-#include "firmware/path_tracer/temporary_bin.hpp"
+#include "firmware/path_tracer/traversals/packet_stage.hpp"
+#include "firmware/path_tracer/traversals/refill.hpp"
+#include "firmware/path_tracer/traversals/shared_treelets.hpp"
+#include "firmware/path_tracer/traversals/temporary_bin.hpp"
 
 namespace path_tracer {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "firmware/path_tracer/stages.hpp"
-#include "firmware/path_tracer/tree_stage.hpp"
+#include "firmware/path_tracer/stages/stages.hpp"
+#include "firmware/path_tracer/traversals/tree_stage.hpp"
 
 namespace path_tracer {
 

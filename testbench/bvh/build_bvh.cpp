@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "firmware/path_tracer/node_layout.hpp"
+#include "firmware/path_tracer/records/node_layout.hpp"
 #include "testbench/bvh/balanced_bvh.hpp"
-#include "testbench/error.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "testbench/bvh/build_bvh.hpp"
 #include "testbench/bvh/treelets.hpp"
-#include "testbench/error.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 

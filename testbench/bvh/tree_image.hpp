@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/path_tracer/traversal_record.hpp"
+#include "firmware/path_tracer/records/traversal_record.hpp"
 #include "testbench/bvh/bvh.hpp"
 
 namespace testbench {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/path_tracer/node_layout.hpp"
+#include "firmware/path_tracer/records/node_layout.hpp"
 #include "testbench/bvh/bvh.hpp"
 
 namespace testbench {

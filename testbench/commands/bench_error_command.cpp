@@ -5,16 +5,16 @@
 #include <memory>
 #include <sstream>
 
-#include "testbench/atomic_file.hpp"
-#include "testbench/chart.hpp"
 #include "testbench/commands/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
-#include "testbench/error.hpp"
-#include "testbench/error_curve.hpp"
-#include "testbench/light_pixels.hpp"
-#include "testbench/progress_bar.hpp"
-#include "testbench/render_parts.hpp"
+#include "testbench/film/chart.hpp"
+#include "testbench/film/error_curve.hpp"
+#include "testbench/film/light_pixels.hpp"
+#include "testbench/run/render_parts.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
 namespace {

@@ -2,15 +2,15 @@
 #include <cstdio>
 #include <memory>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
-#include "testbench/error.hpp"
-#include "testbench/image_file.hpp"
-#include "testbench/progress_bar.hpp"
-#include "testbench/render_parts.hpp"
-#include "testbench/render_report.hpp"
+#include "testbench/film/image_file.hpp"
+#include "testbench/run/render_parts.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/statistics/render_report.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
 namespace {

@@ -6,17 +6,17 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
-#include "testbench/error.hpp"
-#include "testbench/interrupt.hpp"
-#include "testbench/paper.hpp"
-#include "testbench/processes.hpp"
-#include "testbench/progress_bar.hpp"
-#include "testbench/render.hpp"
-#include "testbench/run_times.hpp"
+#include "testbench/paper/paper.hpp"
+#include "testbench/run/render.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/interrupt.hpp"
+#include "testbench/system/processes.hpp"
+#include "testbench/system/progress_bar.hpp"
+#include "testbench/system/run_times.hpp"
 
 namespace testbench {
 namespace {

@@ -6,12 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
-#include "testbench/processes.hpp"
-#include "testbench/progress_bar.hpp"
 #include "testbench/scene/scene_file.hpp"
-#include "testbench/timing_comparison.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/processes.hpp"
+#include "testbench/system/progress_bar.hpp"
+#include "testbench/validation/timing_comparison.hpp"
 
 namespace testbench {
 namespace {

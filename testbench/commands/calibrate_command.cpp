@@ -2,12 +2,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "model/chip_presets.hpp"
-#include "testbench/atomic_file.hpp"
+#include "model/config/chip_presets.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/error.hpp"
-#include "testbench/paper_alternatives.hpp"
+#include "testbench/paper/paper_alternatives.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {
@@ -111,7 +111,7 @@ void add_calibrate_command(CLI::App& app) {
   command.add_flag("--alternatives", state->alternatives,
                    "Fit again under each alternative to what the paper leaves open");
   command.add_option("--write", state->header,
-                     "Write the constants as a C++ header (model/paper_constants.hpp)");
+                     "Write the constants as a C++ header (model/config/paper_constants.hpp)");
   command.add_option("--json", state->json, "Also write constants and cells to this file");
   command.callback([state] { state->run(); });
 }

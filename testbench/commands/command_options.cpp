@@ -6,14 +6,14 @@
 #include <optional>
 #include <thread>
 
-#include "model/chip_file.hpp"
-#include "model/chip_parameters.hpp"
+#include "model/config/chip_file.hpp"
+#include "model/config/chip_parameters.hpp"
 #include "testbench/commands/named_values.hpp"
-#include "testbench/error.hpp"
-#include "testbench/film_size.hpp"
-#include "testbench/program_names.hpp"
-#include "testbench/render.hpp"
+#include "testbench/film/film_size.hpp"
+#include "testbench/run/program_names.hpp"
+#include "testbench/run/render.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

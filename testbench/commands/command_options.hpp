@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/path_tracer/kernels.hpp"
-#include "model/chip_config.hpp"
-#include "model/timing_style.hpp"
-#include "testbench/sampling_choice.hpp"
+#include "firmware/path_tracer/kernels/kernels.hpp"
+#include "model/config/chip_config.hpp"
+#include "model/config/timing_style.hpp"
+#include "testbench/run/sampling_choice.hpp"
+#include "testbench/run/traversal_choice.hpp"
 #include "testbench/scene/scene.hpp"
-#include "testbench/traversal_choice.hpp"
 
 namespace testbench {
 

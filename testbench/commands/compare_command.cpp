@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "testbench/commands/commands.hpp"
-#include "testbench/error.hpp"
-#include "testbench/statistics_difference.hpp"
+#include "testbench/statistics/statistics_difference.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

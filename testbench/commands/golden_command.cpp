@@ -3,9 +3,9 @@
 
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/error.hpp"
-#include "testbench/golden.hpp"
-#include "testbench/progress_bar.hpp"
+#include "testbench/golden/golden.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
 namespace {

@@ -1,10 +1,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "model/parameter_report.hpp"
-#include "testbench/atomic_file.hpp"
+#include "model/config/parameter_report.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/system/atomic_file.hpp"
 
 namespace testbench {
 namespace {

@@ -3,19 +3,19 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/wave_options.hpp"
-#include "testbench/error.hpp"
-#include "testbench/image_file.hpp"
-#include "testbench/interrupt.hpp"
-#include "testbench/observation.hpp"
-#include "testbench/progress_bar.hpp"
-#include "testbench/rank_render.hpp"
-#include "testbench/render_report.hpp"
+#include "testbench/film/image_file.hpp"
+#include "testbench/observe/observation.hpp"
 #include "testbench/scene/scene_file.hpp"
-#include "testbench/statistics_file.hpp"
+#include "testbench/statistics/rank_render.hpp"
+#include "testbench/statistics/render_report.hpp"
+#include "testbench/statistics/statistics_file.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/interrupt.hpp"
+#include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
 namespace {

@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/commands.hpp"
 #include "testbench/report/report_page.hpp"
+#include "testbench/system/atomic_file.hpp"
 
 namespace testbench {
 namespace {

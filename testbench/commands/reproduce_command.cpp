@@ -3,12 +3,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/paper_runs.hpp"
-#include "testbench/progress_bar.hpp"
+#include "testbench/paper/paper_runs.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
 namespace {

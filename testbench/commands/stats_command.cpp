@@ -1,11 +1,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/counters.hpp"
-#include "testbench/error.hpp"
-#include "testbench/statistics_file.hpp"
+#include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/statistics_file.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

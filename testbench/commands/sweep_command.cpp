@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <memory>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/error.hpp"
-#include "testbench/interrupt.hpp"
-#include "testbench/progress_bar.hpp"
 #include "testbench/sweep/sweep_run.hpp"
 #include "testbench/sweep/sweep_table.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/interrupt.hpp"
+#include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
 namespace {

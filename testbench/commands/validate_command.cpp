@@ -2,11 +2,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "testbench/atomic_file.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/progress_bar.hpp"
-#include "testbench/validation.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/progress_bar.hpp"
+#include "testbench/validation/validation.hpp"
 
 namespace testbench {
 namespace {

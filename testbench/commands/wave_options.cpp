@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "testbench/error.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

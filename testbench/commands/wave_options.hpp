@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "model/chip_config.hpp"
+#include "model/config/chip_config.hpp"
 #include "testbench/commands/command_options.hpp"
-#include "testbench/observation_options.hpp"
+#include "testbench/observe/observation_options.hpp"
 
 namespace testbench {
 

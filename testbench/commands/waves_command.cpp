@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "model/wave_signals.hpp"
+#include "model/waves/wave_signals.hpp"
 #include "testbench/commands/commands.hpp"
 
 namespace testbench {

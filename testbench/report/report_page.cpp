@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "testbench/error.hpp"
 #include "testbench/report/report_assets.hpp"
-#include "testbench/statistics_file.hpp"
+#include "testbench/statistics/statistics_file.hpp"
 #include "testbench/sweep/sweep_table.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

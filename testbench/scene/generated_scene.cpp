@@ -5,8 +5,8 @@
 #include <glm/gtc/constants.hpp>
 #include <random>
 
-#include "testbench/error.hpp"
 #include "testbench/scene/mesh.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "testbench/error.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

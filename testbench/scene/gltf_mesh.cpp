@@ -10,8 +10,8 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 
-#include "testbench/error.hpp"
 #include "testbench/scene/gltf_accessor.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

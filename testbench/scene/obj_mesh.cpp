@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
-#include "testbench/error.hpp"
 #include "testbench/scene/obj_numbers.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string>
 
-#include "testbench/error.hpp"
 #include "testbench/scene/obj_mesh.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "testbench/atomic_file.hpp"
-#include "testbench/error.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

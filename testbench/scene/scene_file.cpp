@@ -12,9 +12,9 @@
 #include <string>
 #include <string_view>
 
-#include "testbench/error.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/obj_mesh.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "testbench/digest.hpp"
-#include "testbench/error.hpp"
+#include "testbench/system/digest.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "testbench/error.hpp"
-#include "testbench/processes.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/processes.hpp"
 
 namespace testbench {
 namespace {

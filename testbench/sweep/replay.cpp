@@ -1,8 +1,8 @@
 #include "testbench/sweep/replay.hpp"
 
-#include "testbench/error.hpp"
-#include "testbench/host_pc.hpp"
-#include "testbench/host_time.hpp"
+#include "testbench/run/host_pc.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/host_time.hpp"
 
 namespace testbench {
 

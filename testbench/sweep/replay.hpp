@@ -1,8 +1,8 @@
 #pragma once
 
-#include "testbench/mono_image.hpp"
-#include "testbench/render.hpp"
-#include "testbench/sweep/timing_stream.hpp"
+#include "testbench/machine/timing_stream.hpp"
+#include "testbench/mono_image/mono_image.hpp"
+#include "testbench/run/render.hpp"
 
 namespace testbench {
 

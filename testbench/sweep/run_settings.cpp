@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <charconv>
 
-#include "model/chip_file.hpp"
-#include "testbench/error.hpp"
-#include "testbench/film_size.hpp"
-#include "testbench/program_names.hpp"
-#include "testbench/sampling_choice.hpp"
+#include "model/config/chip_file.hpp"
+#include "testbench/film/film_size.hpp"
+#include "testbench/run/program_names.hpp"
+#include "testbench/run/sampling_choice.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

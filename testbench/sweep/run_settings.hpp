@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "model/chip_parameters.hpp"
-#include "testbench/render.hpp"
+#include "model/config/chip_parameters.hpp"
+#include "testbench/run/render.hpp"
 
 namespace testbench {
 

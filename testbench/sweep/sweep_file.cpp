@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "testbench/error.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "testbench/digest.hpp"
-#include "testbench/error.hpp"
-#include "testbench/film_size.hpp"
-#include "testbench/mono_image.hpp"
+#include "testbench/film/film_size.hpp"
+#include "testbench/mono_image/mono_image.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/system/digest.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {

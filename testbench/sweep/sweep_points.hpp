@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/render_report.hpp"
+#include "testbench/statistics/render_report.hpp"
 #include "testbench/sweep/sweep_file.hpp"
 
 namespace testbench {

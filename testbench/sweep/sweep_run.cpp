@@ -3,11 +3,11 @@
 #include <deque>
 #include <set>
 
-#include "testbench/error.hpp"
-#include "testbench/processes.hpp"
 #include "testbench/sweep/point_work.hpp"
 #include "testbench/sweep/sweep_plan.hpp"
-#include "testbench/workers.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/processes.hpp"
+#include "testbench/system/workers.hpp"
 
 namespace testbench {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <functional>
 
-#include "testbench/ranks.hpp"
 #include "testbench/sweep/point_store.hpp"
 #include "testbench/sweep/sweep_points.hpp"
+#include "testbench/system/ranks.hpp"
 
 namespace testbench {
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "testbench/film.hpp"
+#include "testbench/film/film.hpp"
 
 namespace {
 

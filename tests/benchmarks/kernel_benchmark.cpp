@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "firmware/path_tracer/kernels.hpp"
-#include "firmware/path_tracer/triangle_record.hpp"
+#include "firmware/path_tracer/geometry/triangle_record.hpp"
+#include "firmware/path_tracer/kernels/kernels.hpp"
 
 namespace {
 

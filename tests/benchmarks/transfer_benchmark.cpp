@@ -5,10 +5,10 @@
 #include <numeric>
 #include <random>
 
-#include "firmware/cn/transfer.hpp"
-#include "model/chip_presets.hpp"
-#include "model/ddr_timing.hpp"
-#include "model/mono_pieces.hpp"
+#include "firmware/cn/chip/transfer.hpp"
+#include "model/config/chip_presets.hpp"
+#include "model/memory/ddr_timing.hpp"
+#include "model/transaction/mono_pieces.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <deque>
 #include <vector>
 
-#include "testbench/native_machine.hpp"
+#include "testbench/machine/native_machine.hpp"
 
 namespace test_support {
 

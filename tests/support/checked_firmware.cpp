@@ -2,9 +2,9 @@
 
 #include <cstring>
 
-#include "testbench/film.hpp"
-#include "testbench/mono_image.hpp"
-#include "testbench/results.hpp"
+#include "testbench/film/film.hpp"
+#include "testbench/mono_image/mono_image.hpp"
+#include "testbench/run/results.hpp"
 #include "tests/support/broken_machine.hpp"
 #include "tests/support/hazards.hpp"
 #include "tests/support/scenes.hpp"

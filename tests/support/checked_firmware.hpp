@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "firmware/path_tracer/path_tracer.hpp"
-#include "model/hazard_checker.hpp"
-#include "testbench/native_machine.hpp"
+#include "model/hazards/hazard_checker.hpp"
+#include "testbench/machine/native_machine.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace test_support {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "model/chip_file.hpp"
-#include "model/chip_parameters.hpp"
+#include "model/config/chip_file.hpp"
+#include "model/config/chip_parameters.hpp"
 
 /// What the tests of chip parameters, presets and files share.
 namespace model {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/path_tracer/node_layout.hpp"
+#include "firmware/path_tracer/records/node_layout.hpp"
 #include "testbench/bvh/bvh.hpp"
 
 namespace test_support {

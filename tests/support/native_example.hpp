@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "testbench/error.hpp"
-#include "testbench/example_runs.hpp"
-#include "testbench/native_machine.hpp"
+#include "testbench/machine/native_machine.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/validation/example_runs.hpp"
 
 namespace test_support {
 

@@ -3,9 +3,9 @@
 #include <cstring>
 
 #include "firmware/path_tracer/path_tracer.hpp"
-#include "model/chip_presets.hpp"
-#include "testbench/mono_image.hpp"
-#include "testbench/native_machine.hpp"
+#include "model/config/chip_presets.hpp"
+#include "testbench/machine/native_machine.hpp"
+#include "testbench/mono_image/mono_image.hpp"
 
 namespace test_support {
 

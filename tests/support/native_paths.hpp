@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "firmware/path_tracer/records.hpp"
-#include "testbench/render.hpp"
+#include "firmware/path_tracer/records/records.hpp"
+#include "testbench/run/render.hpp"
 
 namespace test_support {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "firmware/path_tracer/node_layout.hpp"
+#include "firmware/path_tracer/records/node_layout.hpp"
 
 namespace test_support {
 

@@ -4,12 +4,12 @@
 #include <memory>
 #include <string>
 
-#include "model/agenda.hpp"
-#include "model/clear_connect.hpp"
-#include "model/dma_engine.hpp"
-#include "model/mono_ddr.hpp"
-#include "model/poly_sram.hpp"
-#include "model/timing_style.hpp"
+#include "model/config/timing_style.hpp"
+#include "model/dma/dma_engine.hpp"
+#include "model/memory/mono_ddr.hpp"
+#include "model/network/clear_connect.hpp"
+#include "model/pe_array/poly_sram.hpp"
+#include "model/time/agenda.hpp"
 #include "tests/support/protocol_checker.hpp"
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/test_chip.hpp"

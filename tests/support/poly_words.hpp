@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/cn/poly_memory.hpp"
+#include "firmware/cn/chip/poly_memory.hpp"
 
 namespace test_support {
 

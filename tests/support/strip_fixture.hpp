@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/cn/kernel.hpp"
+#include "firmware/cn/language/kernel.hpp"
 
 namespace cn {
 

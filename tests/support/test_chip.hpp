@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/chip_config.hpp"
+#include "model/config/chip_config.hpp"
 
 namespace test_support {
 

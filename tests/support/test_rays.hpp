@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "firmware/path_tracer/records.hpp"
+#include "firmware/path_tracer/records/records.hpp"
 #include "testbench/bvh/bvh.hpp"
-#include "testbench/faces.hpp"
+#include "testbench/mono_image/faces.hpp"
 
 namespace test_support {
 

@@ -8,7 +8,7 @@
 #include <tlm>
 #include <vector>
 
-#include "model/pio_port.hpp"
+#include "model/dma/pio_port.hpp"
 
 namespace test_support {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/path_tracer/kernels.hpp"
-#include "testbench/mono_image.hpp"
+#include "firmware/path_tracer/kernels/kernels.hpp"
+#include "testbench/mono_image/mono_image.hpp"
 
 /// Rays through a scene by the firmware's kernels alone: tested against every triangle, or through a tree of
 /// which a host in the place of the pipeline brings each PE what it asks for.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/cn/vec3.hpp"
+#include "firmware/cn/language/vec3.hpp"
 #include "tests/support/strip_fixture.hpp"
 
 /// Points and directions for tests of poly functions.

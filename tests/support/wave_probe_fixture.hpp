@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/wave_probe.hpp"
+#include "model/waves/wave_probe.hpp"
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/test_chip.hpp"
 #include "tests/support/vcd_reader.hpp"

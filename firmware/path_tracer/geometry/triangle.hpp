@@ -1,0 +1,187 @@
+#pragma once
+
+#include <limits>
+
+#include "firmware/cn/language/control.hpp"
+#include "firmware/cn/language/exact.hpp"
+#include "firmware/path_tracer/geometry/box.hpp"
+#include "firmware/path_tracer/geometry/triangle_record.hpp"
+
+namespace path_tracer {
+
+using cn::mask;
+using cn::poly;
+
+/// A ray, with what every test of a triangle needs of it.
+struct RayOperands {
+  Point3 origin;
+  Direction3 direction;
+  poly<std::int32_t> left_face;
+};
+
+/// A triangle that each PE has its own of.
+struct PolyTriangle {
+  Point3 vertex;
+  Direction3 edge1;
+  Direction3 edge2;
+  Direction3 back;
+  poly<std::int32_t> face;
+  poly<std::int32_t> number;
+};
+
+/// The control unit fetches 13 mono operands and turns the loop; poly ones are charged where they are read.
+inline void issue_operands(const TriangleRecord&) {
+  cn::issue(cn::InstructionClass::mono, 16);
+}
+inline void issue_operands(const PolyTriangle&) {
+  cn::issue(cn::InstructionClass::mono, 3);
+}
+
+/// A line against a triangle, scaled by |determinant| so that no division is needed to test it: Moeller and
+/// Trumbore 1997, with numerators compared instead of quotients. Of their two cross products the one that is
+/// the triangle's alone is in its record, as Embree has it (Wald, Woop, Benthin, Johnson, Ernst, SIGGRAPH
+/// 2014): 18 multiplications instead of 24.
+struct Crossing {
+  poly<double> determinant;  ///< positive when the line meets the front
+  poly<double> size;         ///< |determinant|
+  poly<double> distance;     ///< distance along the direction * size
+  mask inside;               ///< within the triangle and ahead of the origin
+
+  template <class Triangle>
+  Crossing(const RayOperands& ray, const Triangle& triangle) {
+    issue_operands(triangle);
+    const Direction3 to_vertex = triangle.vertex - ray.origin;
+    const Direction3 moment = cross(ray.direction, to_vertex);
+    determinant.become(dot(ray.direction, triangle.back));
+    size.become(cn::abs(determinant));
+    distance.become(cn::flip_sign(dot(to_vertex, triangle.back), determinant));
+    const poly<double> u = cn::flip_sign(dot(moment, triangle.edge2), determinant);
+    const poly<double> minus_v = cn::flip_sign(dot(moment, triangle.edge1), determinant);
+    inside = (u >= 0.0) & (minus_v <= 0.0) & (u - minus_v <= size) & (distance > 0.0);
+  }
+};
+
+/// What a search starts from and what it finds.
+struct Nearest {
+  poly<double> distance = std::numeric_limits<double>::infinity();  ///< scaled by |determinant|
+  poly<double> determinant = 1.0;
+  poly<std::int32_t> number = -1;
+
+  template <class Triangle>
+  void take(const Crossing& crossing, const Triangle& triangle) {
+    distance = crossing.distance;
+    determinant = crossing.determinant;
+    number = triangle.number;
+  }
+};
+
+/// Triangles that the control unit hands to all PEs one after the other.
+struct MonoTriangles {
+  const TriangleRecord* first;
+  int count;
+
+  const TriangleRecord& operator()(int i) const { return first[i]; }
+  mask where_there(int, const mask& lanes) const { return lanes; }
+};
+
+/// Sum of the components' sizes, which is at least the length.
+inline poly<double> length_bound(const Direction3& direction) {
+  return cn::abs(direction.x) + cn::abs(direction.y) + cn::abs(direction.z);
+}
+
+/// Whether rounding cannot have moved the hit out of the triangle's padded box (triangle_record.hpp).
+inline mask is_certain(const poly<double>& determinant, const RayOperands& ray) {
+  return cn::abs(determinant) >= length_bound(ray.direction);
+}
+
+inline Direction3 as_poly(const vec3<double>& v) {
+  return {v.x, v.y, v.z};
+}
+inline const Direction3& as_poly(const Direction3& v) {
+  return v;
+}
+
+/// The box's own test for a hit of which that is not certain.
+template <class Triangle>
+mask meets_padded_box(const RayOperands& ray, double reach, const Crossing& crossing,
+                      const Triangle& triangle) {
+  // The power of two that the edges are scaled by: edge2 x edge1 has it squared, `back` once.
+  const Direction3 edge1 = as_poly(triangle.edge1);
+  const Direction3 edge2 = as_poly(triangle.edge2);
+  const Direction3 back = as_poly(triangle.back);
+  const poly<double> ratio = dot(cross(edge2, edge1), back) / dot(back, back);
+  const poly<double> inverse_scale = cn::inverse_power_of_two(cn::nearest_power_of_two(ratio));
+  const PaddedBox<poly<double>> box =
+      padded_box(as_poly(triangle.vertex), edge1 * inverse_scale, edge2 * inverse_scale, reach);
+  const BoxRay box_ray(ray.origin, ray.direction);
+  const Slabs slabs = box_ray.slabs(box.lower, box.upper);
+  return (slabs.entry <= slabs.exit) & (slabs.entry <= latest_entry(crossing.distance / crossing.size));
+}
+
+/// Whether `crossing` comes before `nearest` in the one order that every search keeps to, whatever order it
+/// meets triangles in: by the exact quotients of the computed distances and determinants, then by number.
+template <class Found>
+mask comes_before(const Crossing& crossing, const poly<std::int32_t>& number, const Found& nearest) {
+  const poly<double> nearest_size = cn::abs(nearest.determinant);
+  const poly<double> left = crossing.distance * nearest_size;
+  const poly<double> right = nearest.distance * crossing.size;
+  const poly<double> left_error = cn::product_error(crossing.distance, nearest_size, left);
+  const poly<double> right_error = cn::product_error(nearest.distance, crossing.size, right);
+  const mask same = (left == right) & (left_error == right_error);
+  return (left < right) | ((left == right) & (left_error < right_error)) | (same & (number < nearest.number));
+}
+
+/// Takes `triangle` where it is a candidate and nearer than `nearest`; returns where it is as near.
+template <class Found, class Triangle>
+mask take_nearer(const Crossing& crossing, const Triangle& triangle, const mask& candidate, Found& nearest) {
+  const poly<double> left = crossing.distance * cn::abs(nearest.determinant);
+  const poly<double> right = nearest.distance * crossing.size;
+  const mask as_near = candidate & (left == right);
+  cn::poly_if(candidate & (left < right), [&] { nearest.take(crossing, triangle); });
+  return as_near;
+}
+
+/// The search without what rounding may do: of the lanes that it returns, two crossings were too close to
+/// tell which is nearer.
+template <class Found, class Triangles>
+mask search_fast(const RayOperands& ray, const Triangles& triangles, Found& nearest) {
+  mask tied(cn::mask_from_bits(0));
+  for (int i = 0; i < triangles.count; ++i) {
+    const auto& triangle = triangles(i);
+    const Crossing crossing(ray, triangle);
+    const mask candidate =
+        triangles.where_there(i, crossing.inside & (ray.left_face != poly<std::int32_t>(triangle.face)));
+    tied = tied | take_nearer(crossing, triangle, candidate, nearest);
+  }
+  return tied;
+}
+
+template <class Found, class Triangles>
+void search_exactly(const RayOperands& ray, double reach, const Triangles& triangles, Found& nearest) {
+  for (int i = 0; i < triangles.count; ++i) {
+    const auto& triangle = triangles(i);
+    const Crossing crossing(ray, triangle);
+    const mask candidate =
+        triangles.where_there(i, crossing.inside & (ray.left_face != poly<std::int32_t>(triangle.face)));
+    const mask valid = candidate & (is_certain(crossing.determinant, ray) |
+                                    meets_padded_box(ray, reach, crossing, triangle));
+    cn::poly_if(valid & comes_before(crossing, poly<std::int32_t>(triangle.number), nearest),
+                [&] { nearest.take(crossing, triangle); });
+  }
+}
+
+/// Puts the nearest of `triangles` in the place of `nearest` where it comes before. A ray ignores the face
+/// that it leaves. The exact search runs only for a PE that needs it: where the fast one met no tie and its
+/// result is certain, no other crossing can come before that.
+template <class Found, class Triangles>
+void search(const RayOperands& ray, double reach, const Triangles& triangles, Found& nearest) {
+  const Found start = nearest;
+  const mask tied = search_fast(ray, triangles, nearest);
+  const mask changed = nearest.number != start.number;
+  cn::poly_if_any(tied | (changed & !is_certain(nearest.determinant, ray)), [&] {
+    nearest = start;
+    search_exactly(ray, reach, triangles, nearest);
+  });
+}
+
+}  // namespace path_tracer

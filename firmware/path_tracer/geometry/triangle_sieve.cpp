@@ -1,0 +1,41 @@
+#include "firmware/path_tracer/geometry/triangle_sieve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/path_tracer/records/node_layout.hpp"
+
+namespace path_tracer {
+namespace {
+
+double largest_component(const vec3<double>& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+std::array<float, 3> narrow(const vec3<double>& v, int exponent) {
+  return {float(std::ldexp(v.x, exponent)), float(std::ldexp(v.y, exponent)),
+          float(std::ldexp(v.z, exponent))};
+}
+
+SieveTriangle sieve_triangle(const TriangleRecord& triangle, const vec3<double>& anchor, int unit_exponent) {
+  const double largest = std::max(largest_component(triangle.edge1), largest_component(triangle.edge2));
+  const int edge_exponent = largest > 0 ? -std::ilogb(largest) - 1 : 0;
+  return {narrow(triangle.vertex - anchor, unit_exponent), narrow(triangle.edge1 * -1.0, edge_exponent),
+          narrow(triangle.edge2, edge_exponent), narrow(triangle.back, edge_exponent + unit_exponent),
+          triangle.face};
+}
+
+}  // namespace
+
+TriangleSieve make_sieve(const TriangleRecord* first, int count, double reach) {
+  TriangleSieve sieve;
+  if (count == 0) return sieve;
+  sieve.anchor = first->vertex;
+  sieve.unit = to_node_unit(NodeFormat::fp32, reach);
+  sieve.triangles.reserve(std::size_t(count));
+  for (int i = 0; i < count; ++i)
+    sieve.triangles.push_back(sieve_triangle(first[i], sieve.anchor, std::ilogb(sieve.unit)));
+  return sieve;
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,297 @@
+// Built once for each x86-64 level; PATH_TRACER_KERNELS is the level's name for the table.
+
+#include "firmware/path_tracer/kernels/kernels.hpp"
+
+#include "firmware/path_tracer/geometry/sifted_search.hpp"
+#include "firmware/path_tracer/kernels/places.hpp"
+#include "firmware/path_tracer/sampling/light_sampling.hpp"
+#include "firmware/path_tracer/sampling/sampler.hpp"
+
+namespace path_tracer {
+
+const TraversalKernels& TRAVERSAL_KERNELS();
+const PacketKernels& PACKET_KERNELS();
+
+namespace {
+
+mask kept_mask(const LaneMask& lanes) {
+  return cn::recall(lanes);
+}
+
+void intersect(const IntersectArguments& arguments) {
+  const RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
+                        arguments.ray.get(&RayRecord::left_face)};
+  Nearest nearest;
+  search(ray, arguments.reach,
+         SiftedTriangles{{arguments.triangles, arguments.triangle_count}, arguments.sieve}, nearest);
+  write_hit(nearest, ray.origin, ray.direction, arguments.hit);
+  arguments.surface_place.write(place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord)));
+  cn::keep(nearest.number >= 0, *arguments.hit_something);
+}
+
+poly<double> largest(const vec3<poly<double>>& v) {
+  return cn::max(v.x, cn::max(v.y, v.z));
+}
+
+struct Surface {
+  Point3 position;
+  Direction3 normal;  ///< on the side that the ray arrived from
+  vec3<poly<double>> reflectance;
+};
+
+/// A shadow ray from `surface`, and what its answer will be worth; `wants_light` says where there can be one.
+void aim(const ScatterArguments& arguments, const Surface& surface, const mask& wants_light) {
+  const PolyPointer<LightRecord>& light = arguments.light;
+  const LightSurface light_surface{light.get(&LightRecord::vertex), light.get(&LightRecord::edge1),
+                                   light.get(&LightRecord::edge2), light.get(&LightRecord::normal)};
+  const poly<double> u = arguments.path.get(&PathRecord::light_u);
+  const poly<double> v = arguments.path.get(&PathRecord::light_v);
+  const LightSample sample = arguments.light_sampling == LightSampling::area
+                                 ? sample_light_area(light_surface, surface.position, surface.normal, u, v)
+                                 : sample_light_solid_angle(light_surface, light.get(&LightRecord::shape),
+                                                            surface.position, surface.normal, u, v);
+  const mask facing = sample.weight > 0.0;
+  const poly<double> scale = cn::select(facing, sample.weight, poly<double>(0.0)) *
+                             light.get(&LightRecord::inverse_pdf) * (1.0 / kPi);
+  arguments.shadow_ray.set(&RayRecord::origin, surface.position);
+  arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
+  arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
+  arguments.shadow_ray.set(&RayRecord::light_face, light.get(&LightRecord::face));
+  arguments.lighting.set(&LightingRecord::weight, surface.reflectance * scale);
+  arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
+  cn::keep(arguments.cull_shadow_rays ? wants_light & facing : wants_light, *arguments.casts);
+}
+
+void scatter(const ScatterArguments& arguments) {
+  const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
+  const mask front = arguments.hit.get(&HitRecord::front) != 0;
+  const poly<std::int32_t> depth = arguments.path.get(&PathRecord::depth);
+  const Direction3 surface_normal = arguments.surface.get(&SurfaceRecord::normal);
+  const Surface surface{arguments.hit.get(&HitRecord::position),
+                        cn::select(front, surface_normal, surface_normal * -1.0),
+                        arguments.surface.get(&SurfaceRecord::reflectance)};
+  const poly<double> albedo = largest(surface.reflectance);
+  const ScatterNumbers random =
+      scatter_numbers(arguments.sampler, arguments.seed, arguments.path.get(&PathRecord::pixel),
+                      arguments.path.get(&PathRecord::sample), depth);
+
+  // Russian roulette on the surface alone: the path before it need not be loaded.
+  const mask safe = depth < arguments.roulette_start;
+  const poly<double> survival =
+      cn::select(safe, poly<double>(1.0), cn::min(albedo, poly<double>(arguments.max_survival)));
+  const mask reflects = hit & (albedo > 0.0);
+  const mask goes_on = reflects & (random.roulette < survival);
+  const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
+
+  const vec3<poly<double>> none{0.0, 0.0, 0.0};
+  const mask emits = hit & front & (arguments.casts_shadow_rays ? depth == 0 : depth >= 0);
+  arguments.scatter.set(&ScatterRecord::position, surface.position);
+  arguments.scatter.set(&ScatterRecord::direction,
+                        sample_cosine(surface.normal, random.direction.u, random.direction.v));
+  arguments.scatter.set(&ScatterRecord::radiance,
+                        cn::select(emits, arguments.surface.get(&SurfaceRecord::emission), none));
+  arguments.scatter.set(&ScatterRecord::weight,
+                        cn::select(goes_on, surface.reflectance * inverse_survival, none));
+  arguments.scatter.set(&ScatterRecord::face, arguments.surface.get(&SurfaceRecord::face));
+  arguments.scatter.set(&ScatterRecord::ended,
+                        cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
+  if (arguments.casts_shadow_rays) aim(arguments, surface, reflects);
+}
+
+void illuminate(const IlluminateArguments& arguments) {
+  const mask sees =
+      (arguments.hit.get(&HitRecord::hit) != 0) &
+      (arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face));
+  const vec3<poly<double>> light =
+      arguments.surface.get(&SurfaceRecord::emission) * arguments.lighting.get(&LightingRecord::weight);
+  const vec3<poly<double>> none{0.0, 0.0, 0.0};
+  arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
+}
+
+void append(const AppendArguments& arguments) {
+  const poly<std::int32_t> vertices = arguments.path.get(&PathRecord::vertices);
+  const mask ended = arguments.scatter.get(&ScatterRecord::ended) != 0;
+  const mask finished = ended | (vertices + 1 >= arguments.slot_vertices);
+
+  vec3<poly<double>> radiance = arguments.scatter.get(&ScatterRecord::radiance);
+  cn::poly_if(kept_mask(*arguments.has_direct_light), [&] {
+    const vec3<poly<double>> sum = radiance + arguments.direct_light.get(&DirectLightRecord::radiance);
+    radiance = sum;
+  });
+  arguments.vertex.set(&VertexRecord::radiance, radiance);
+  arguments.vertex.set(&VertexRecord::weight, arguments.scatter.get(&ScatterRecord::weight));
+  const poly<std::int32_t> slot_in_block = cn::pe_num();
+  arguments.vertex_place.write(place_of(
+      arguments.block_vertices, slot_in_block * arguments.slot_vertices + vertices, sizeof(VertexRecord)));
+
+  const auto& entry = arguments.finished_record;
+  entry.set(&FinishedRecord::slot, slot_in_block + arguments.first_slot);
+  entry.set(&FinishedRecord::vertices, vertices + 1);
+  entry.set(&FinishedRecord::pixel, arguments.path.get(&PathRecord::pixel));
+  entry.set(&FinishedRecord::sample, arguments.path.get(&PathRecord::sample));
+  entry.set(&FinishedRecord::folded, arguments.path.get(&PathRecord::folded));
+  entry.set(&FinishedRecord::ended, arguments.scatter.get(&ScatterRecord::ended));
+  cn::keep(ended, *arguments.ended);
+  cn::keep(finished, *arguments.finished);
+}
+
+/// number * stride modulo the number of pixels: products below 2^53 are exact, and the quotient by
+/// multiplication is at most one off.
+poly<std::int32_t> strided_pixel(const poly<std::int32_t>& number, int stride, std::int32_t pixels) {
+  const poly<double> place = cn::convert<double>(number) * double(stride);
+  const poly<double> rounds = cn::convert<double>(cn::convert<std::int32_t>(place * (1.0 / pixels)));
+  const poly<double> rest = place - rounds * double(pixels);
+  const poly<double> above = cn::select(rest < 0.0, rest + double(pixels), rest);
+  return cn::convert<std::int32_t>(cn::select(above >= double(pixels), above - double(pixels), above));
+}
+
+void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_t>& number) {
+  const std::int32_t pixels = arguments.camera->width * arguments.camera->height;
+  poly<std::int32_t> pixel = number + arguments.next_pixel;
+  poly<std::int32_t> sample = arguments.next_sample;
+  cn::poly_while([&] { return pixel >= pixels; },
+                 [&] {
+                   pixel -= pixels;
+                   sample += 1;
+                 });
+  if (arguments.pixel_stride != 1) pixel = strided_pixel(pixel, arguments.pixel_stride, pixels);
+  const UniformPair in_pixel = camera_numbers(arguments.sampler, arguments.seed, pixel, sample);
+  const CameraRay ray = sample_camera(*arguments.camera, pixel, in_pixel.u, in_pixel.v);
+  arguments.ray.set(&RayRecord::origin, ray.origin);
+  arguments.ray.set(&RayRecord::direction, ray.direction);
+  arguments.ray.set(&RayRecord::left_face, poly<std::int32_t>(kNoFace));
+  arguments.ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
+  arguments.next_path.set(&PathRecord::pixel, pixel);
+  arguments.next_path.set(&PathRecord::sample, sample);
+  arguments.next_path.set(&PathRecord::depth, poly<std::int32_t>(0));
+  arguments.next_path.set(&PathRecord::vertices, poly<std::int32_t>(0));
+  arguments.next_path.set(&PathRecord::folded, poly<std::int32_t>(0));
+}
+
+void continue_path(const ReplaceArguments& arguments) {
+  const mask flushed = kept_mask(*arguments.finished);
+  arguments.ray.set(&RayRecord::origin, arguments.scatter.get(&ScatterRecord::position));
+  arguments.ray.set(&RayRecord::direction, arguments.scatter.get(&ScatterRecord::direction));
+  arguments.ray.set(&RayRecord::left_face, arguments.scatter.get(&ScatterRecord::face));
+  arguments.ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
+  arguments.next_path.set(&PathRecord::pixel, arguments.path.get(&PathRecord::pixel));
+  arguments.next_path.set(&PathRecord::sample, arguments.path.get(&PathRecord::sample));
+  arguments.next_path.set(&PathRecord::depth, arguments.path.get(&PathRecord::depth) + 1);
+  const poly<std::int32_t> vertices = arguments.path.get(&PathRecord::vertices) + 1;
+  arguments.next_path.set(&PathRecord::vertices, cn::select(flushed, poly<std::int32_t>(0), vertices));
+  const poly<std::int32_t> folded = arguments.path.get(&PathRecord::folded);
+  arguments.next_path.set(&PathRecord::folded, cn::select(flushed, poly<std::int32_t>(1), folded));
+}
+
+/// For the shadow ray of the vertex that the new ray will find; so early because the light is loaded with the
+/// vertex.
+void choose_light(const ReplaceArguments& arguments) {
+  const PolyPointer<PathRecord>& path = arguments.next_path;
+  const LightNumbers numbers = light_numbers(arguments.sampler, arguments.seed, path.get(&PathRecord::pixel),
+                                             path.get(&PathRecord::sample), path.get(&PathRecord::depth),
+                                             arguments.light_cdf, arguments.light_count);
+  path.set(&PathRecord::light_u, numbers.position.u);
+  path.set(&PathRecord::light_v, numbers.position.v);
+  arguments.light_place.write(place_of(arguments.lights, numbers.light, sizeof(LightRecord)));
+}
+
+void replace(const ReplaceArguments& arguments) {
+  const mask ended = kept_mask(*arguments.ended);
+  const poly<std::int32_t> number = arguments.number.read();
+  const mask starts = ended & (number < arguments.remaining);
+  cn::poly_if_any(starts, [&] { start_camera_path(arguments, number); });
+  cn::poly_if_any(!ended, [&] { continue_path(arguments); });
+  if (arguments.light_cdf != nullptr) choose_light(arguments);
+  cn::keep(starts | !ended, *arguments.live);
+}
+
+void finished_place(const FinishedPlaceArguments& arguments) {
+  arguments.finished_place.write(
+      place_of(arguments.next_finished, arguments.number.read(), sizeof(FinishedRecord)));
+}
+
+void list(const ListArguments& arguments) {
+  const FinishedPath& path = arguments.path;
+  const poly<std::int32_t> slot = arguments.entry.get(&FinishedRecord::slot);
+  const poly<std::int32_t> vertices = arguments.entry.get(&FinishedRecord::vertices);
+  const mask ended = arguments.entry.get(&FinishedRecord::ended) != 0;
+  path.vertex_place.write(
+      place_of(arguments.vertices, slot, std::size_t(arguments.slot_vertices) * sizeof(VertexRecord)));
+  path.fold_place.write(place_of(arguments.folds, slot, sizeof(FoldRecord)));
+  path.vertices.write(vertices);
+  path.pixel.write(cn::select(ended, arguments.entry.get(&FinishedRecord::pixel), poly<std::int32_t>(-1)));
+  path.sample.write(arguments.entry.get(&FinishedRecord::sample));
+  for (int load = 0; load * kVerticesPerLoad < arguments.slot_vertices; ++load)
+    cn::keep(vertices > load * kVerticesPerLoad, arguments.needs_load[load]);
+  cn::keep(arguments.entry.get(&FinishedRecord::folded) != 0, *arguments.folded);
+  cn::keep(!ended, *arguments.flushed);
+}
+
+struct FoldSum {
+  vec3<poly<double>> radiance;
+  vec3<poly<double>> throughput;
+};
+
+/// Puts the vertices that were folded when the slot was full before those of `sum`.
+void join_earlier(const FoldArguments& arguments, FoldSum& sum) {
+  cn::poly_if(kept_mask(*arguments.folded), [&] {
+    const vec3<poly<double>> throughput = arguments.earlier.get(&FoldRecord::throughput);
+    sum.radiance = arguments.earlier.get(&FoldRecord::radiance) + throughput * sum.radiance;
+    sum.throughput = throughput * sum.throughput;
+  });
+}
+
+void save_sum(const FoldArguments& arguments, const FoldSum& sum) {
+  arguments.radiance.set(&RadianceRecord::radiance, sum.radiance);
+  arguments.radiance.set(&RadianceRecord::pixel, arguments.path.pixel.read());
+  arguments.radiance.set(&RadianceRecord::sample, arguments.path.sample.read());
+  if (arguments.folded == nullptr) return;
+  arguments.flushed.set(&FoldRecord::radiance, sum.radiance);
+  arguments.flushed.set(&FoldRecord::throughput, sum.throughput);
+}
+
+/// The recursion L = radiance + weight * L, from a path's last vertex to its first. Where only some of a path
+/// is here, the product of its weights goes along.
+void fold(const FoldArguments& arguments) {
+  FoldSum sum{{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
+  if (!arguments.starts) {
+    sum.radiance = arguments.sum.get(&FoldRecord::radiance);
+    if (arguments.folded != nullptr) sum.throughput = arguments.sum.get(&FoldRecord::throughput);
+  }
+  const poly<std::int32_t> vertices = arguments.path.vertices.read();
+  for (int i = kVerticesPerLoad - 1; i >= 0; --i) {
+    cn::poly_if(vertices > arguments.first_vertex + i, [&] {
+      const PolyPointer<VertexRecord> vertex = arguments.vertices[i];
+      const vec3<poly<double>> weight = vertex.get(&VertexRecord::weight);
+      sum.radiance = vertex.get(&VertexRecord::radiance) + weight * sum.radiance;
+      if (arguments.folded != nullptr) sum.throughput = weight * sum.throughput;
+    });
+  }
+  if (arguments.first_vertex > 0) {
+    arguments.sum.set(&FoldRecord::radiance, sum.radiance);
+    if (arguments.folded != nullptr) arguments.sum.set(&FoldRecord::throughput, sum.throughput);
+    return;
+  }
+  if (arguments.folded != nullptr) join_earlier(arguments, sum);
+  save_sum(arguments, sum);
+}
+
+}  // namespace
+
+const Kernels& PATH_TRACER_KERNELS() {
+  static constexpr Kernels table{
+      cn::kernel<IntersectArguments, intersect>("intersect"),
+      cn::kernel<ScatterArguments, scatter>("scatter"),
+      cn::kernel<IlluminateArguments, illuminate>("illuminate"),
+      cn::kernel<AppendArguments, append>("append"),
+      cn::kernel<ReplaceArguments, replace>("replace"),
+      cn::kernel<FinishedPlaceArguments, finished_place>("finished_place"),
+      cn::kernel<ListArguments, list>("list"),
+      cn::kernel<FoldArguments, fold>("fold"),
+      TRAVERSAL_KERNELS,
+      PACKET_KERNELS,
+  };
+  return table;
+}
+
+}  // namespace path_tracer

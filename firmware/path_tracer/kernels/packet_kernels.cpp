@@ -1,0 +1,119 @@
+// Built once for each x86-64 level; PACKET_KERNELS is the level's name for the table.
+
+#include "firmware/path_tracer/kernels/packet_kernels.hpp"
+
+#include "firmware/path_tracer/geometry/nearest_face.hpp"
+#include "firmware/path_tracer/tree/node_ray.hpp"
+
+namespace path_tracer {
+namespace {
+
+poly<std::int32_t> signed_high_word(const poly<double>& a) {
+  return cn::reinterpret_word<std::int32_t>(cn::high_word(a));
+}
+
+void begin(const BeginPacketArguments& arguments) {
+  const PolyPointer<TraversalRecord>& record = arguments.record;
+  const BoxRay box_ray(record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction));
+  arguments.packet.set(&PacketRecord::minus_inverse, box_ray.minus_inverse());
+  arguments.packet.set(&PacketRecord::limit,
+                       signed_high_word(poly<double>(std::numeric_limits<double>::infinity())));
+  arguments.packet.set(&PacketRecord::light, arguments.ray.get(&QueuedRay::light));
+  arguments.keys[PacketKeys::kRoot].write(poly<std::int32_t>(0));
+  cn::keep(record.get(&TraversalRecord::light_face) != poly<std::int32_t>(kNoFace), *arguments.seeks_light);
+}
+
+void want(const WantArguments& arguments) {
+  cn::keep(arguments.keys[arguments.place].read() <= arguments.packet.get(&PacketRecord::limit),
+           *arguments.wanting);
+  if (!arguments.is_node) return;
+  for (int i = 0; i < arguments.keys.width(); ++i)
+    arguments.keys[arguments.keys.place(arguments.level, i)].write(poly<std::int32_t>(kNotMet));
+}
+
+/// Where a ray enters and leaves four children's boxes, by axis.
+struct Slabs4 {
+  poly4<double> entry[kAxes];
+  poly4<double> exit[kAxes];
+
+  /// The same numbers as BoxRay makes. Nodes are the same for all PEs, but which side of a box is near is
+  /// not, so that both are computed before they are told apart.
+  Slabs4(const MonoNode::Four& four, const Point3& origin, const Direction3& minus_inverse) {
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const poly<double>& scale = component(minus_inverse, axis);
+      const poly4<double> from = same4(component(origin, axis));
+      const poly4<double> lower = (from - four.lower[axis]) * same4(scale);
+      const poly4<double> upper = (from - four.upper[axis]) * same4(scale);
+      const mask backward = scale > 0.0;
+      entry[axis].become(cn::select(backward, upper, lower));
+      exit[axis].become(cn::select(backward, lower, upper));
+    }
+  }
+};
+
+void visit(const VisitArguments& arguments) {
+  const MonoNode& node = *arguments.node;
+  const Point3 origin = arguments.record.get(&TraversalRecord::origin);
+  const Direction3 minus_inverse = arguments.packet.get(&PacketRecord::minus_inverse);
+  const poly<std::int32_t> limit = arguments.packet.get(&PacketRecord::limit);
+  poly<std::int32_t> key[kMaxNodeWidth];
+  poly<std::int32_t> first = kNotMet;
+  for (int four = 0; four < node.children; four += 4) {
+    const Slabs4 slabs(node.four[four / 4], origin, minus_inverse);
+    for (int i = 0; i < 4 && four + i < node.children; ++i) {
+      const poly<double> from = from_origin(slabs.entry[0][i], slabs.entry[1][i], slabs.entry[2][i]);
+      const poly<double> to = cn::min(cn::min(slabs.exit[0][i], slabs.exit[1][i]), slabs.exit[2][i]);
+      const poly<std::int32_t> entry = signed_high_word(from);
+      const int child = four + i;
+      key[child].become(cn::select((from <= to) & (entry <= limit), entry, poly<std::int32_t>(kNotMet)));
+      first.become(cn::min(first, key[child]));
+      arguments.keys[arguments.keys.place(arguments.level, child)].write(key[child]);
+    }
+  }
+  const mask meets_any = first != poly<std::int32_t>(kNotMet);
+  for (int i = 0; i < node.children; ++i) cn::keep((key[i] == first) & meets_any, arguments.enters_first[i]);
+}
+
+/// What a leaf changes; a shadow ray is over when something is nearer than its light (traversal_kernels.cpp).
+void write_nearest(const TestLeafArguments& arguments, const NearestFace& nearest,
+                   const poly<std::int32_t>& light_face) {
+  const PolyPointer<TraversalRecord>& record = arguments.record;
+  record.set(&TraversalRecord::distance, nearest.distance);
+  record.set(&TraversalRecord::determinant, nearest.determinant);
+  record.set(&TraversalRecord::number, nearest.number);
+  const poly<std::int32_t> limit =
+      signed_high_word(latest_entry(nearest.distance / cn::abs(nearest.determinant)));
+  const mask occluded = (light_face != poly<std::int32_t>(kNoFace)) & (nearest.face != light_face);
+  arguments.packet.set(&PacketRecord::limit, cn::select(occluded, poly<std::int32_t>(kNoMore), limit));
+}
+
+void test_leaf(const TestLeafArguments& arguments) {
+  const PolyPointer<TraversalRecord>& record = arguments.record;
+  const RayOperands ray = ray_of(record);
+  const poly<std::int32_t> light_face = record.get(&TraversalRecord::light_face);
+  NearestFace nearest;
+  nearest.distance.become(record.get(&TraversalRecord::distance));
+  nearest.determinant.become(record.get(&TraversalRecord::determinant));
+  const poly<std::int32_t> number = record.get(&TraversalRecord::number);
+  nearest.number.become(number);
+  nearest.face.become(light_face);
+  search(ray, arguments.reach, MonoTriangles{arguments.triangles, arguments.count}, nearest);
+  // One that missed its light finds out what else it hits, as the light's face may have other triangles.
+  record.set(&TraversalRecord::light_face,
+             cn::select(nearest.number < 0, poly<std::int32_t>(kNoFace), light_face));
+  cn::poly_if_any(nearest.number != number, [&] { write_nearest(arguments, nearest, light_face); });
+}
+
+}  // namespace
+
+const PacketKernels& PACKET_KERNELS() {
+  static constexpr PacketKernels table{
+      cn::kernel<BeginPacketArguments, begin>("begin_packet"),
+      cn::kernel<WantArguments, want>("want"),
+      cn::kernel<VisitArguments, visit>("visit"),
+      cn::kernel<TestLeafArguments, test_leaf>("test_leaf"),
+  };
+  return table;
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,18 @@
+#include "firmware/path_tracer/kernels/kernels.hpp"
+
+namespace path_tracer {
+
+const Kernels& kernels_x86_64_v2();
+const Kernels& kernels_x86_64_v3();
+const Kernels& kernels_x86_64_v4();
+const Kernels& kernels_observed();
+
+const Kernels& kernels(Level level) {
+  return cn::at_level(level, kernels_x86_64_v2, kernels_x86_64_v3, kernels_x86_64_v4)();
+}
+
+const Kernels& observed_kernels() {
+  return kernels_observed();
+}
+
+}  // namespace path_tracer

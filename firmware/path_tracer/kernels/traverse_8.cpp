@@ -1,0 +1,7 @@
+#include "firmware/path_tracer/kernels/traverse.hpp"
+
+namespace path_tracer {
+
+template const TraverseKernels& TRAVERSE_KERNELS<8>();
+
+}  // namespace path_tracer

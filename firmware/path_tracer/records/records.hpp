@@ -1,0 +1,154 @@
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/cn/language/vec3.hpp"
+
+/// What lies in mono memory, record by record. Poly buffers hold the same layouts, so a transfer is a plain
+/// copy.
+namespace path_tracer {
+
+using cn::vec3;
+
+inline constexpr std::int32_t kNoFace = -1;
+
+/// How the camera turns a film position into a direction: corner + right * x + down * y, x and y in pixels.
+struct CameraRecord {
+  vec3<double> position{};
+  vec3<double> corner{};
+  vec3<double> right{};
+  vec3<double> down{};
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+};
+
+/// For intersection (triangle.hpp); made by triangle_record(). Triangles that touch in one plane share a
+/// face: a ray that leaves a face ignores it, so no distance threshold is needed to keep a surface from
+/// shadowing itself.
+struct TriangleRecord {
+  vec3<double> vertex{};
+  vec3<double> edge1{};  ///< the edges and `back` times one power of two, see triangle_record()
+  vec3<double> edge2{};
+  vec3<double> back{};  ///< edge2 x edge1, away from the front
+  std::int32_t face = kNoFace;
+  std::int32_t number = 0;  ///< in the scene; of hits at the same distance the lowest counts
+};
+
+/// For shading, one a triangle: "around 10 double precision floats" (paper, section 4.1).
+struct SurfaceRecord {
+  vec3<double> normal{};  ///< unit length, towards the front
+  vec3<double> reflectance{};
+  vec3<double> emission{};
+  std::int32_t face = kNoFace;
+  std::int32_t unused = 0;
+};
+
+enum class LightShape : std::int32_t {
+  triangle,   ///< of edge1 and edge2
+  rectangle,  ///< the parallelogram of edge1 and edge2, which are orthogonal
+};
+
+/// A triangle or rectangle that emits from its front, where edge1 x edge2 points.
+struct LightRecord {
+  vec3<double> vertex{};
+  vec3<double> edge1{};
+  vec3<double> edge2{};
+  vec3<double> normal{};
+  double inverse_pdf = 0;  ///< area / probability of this light
+  std::int32_t face = kNoFace;
+  std::int32_t shape = static_cast<std::int32_t>(LightShape::triangle);
+};
+
+/// Ray bin. With direct lighting a slot's ray is the next segment of its path or the shadow ray of the last
+/// one.
+struct RayRecord {
+  vec3<double> origin{};
+  vec3<double> direction{};
+  std::int32_t left_face = kNoFace;   ///< the face that the ray leaves
+  std::int32_t light_face = kNoFace;  ///< of a shadow ray: the face that it looks for
+};
+
+/// Ray bin of programs that use a tree: rays stand there packed, whatever slot they belong to.
+struct QueuedRay {
+  RayRecord ray{};
+  std::int32_t slot = 0;
+  std::int32_t light = 0;  ///< of a shadow ray: the number of the light that it was sent to
+};
+
+/// Intersection bin.
+struct HitRecord {
+  vec3<double> position{};
+  std::int32_t hit = 0;    ///< 1 when something was hit
+  std::int32_t front = 0;  ///< 1 when its front was
+};
+
+/// Intersection bin to path bin: the vertex and the ray that goes on from it.
+struct ScatterRecord {
+  vec3<double> position{};
+  vec3<double> direction{};
+  vec3<double> radiance{};  ///< that the vertex sends towards the path's start, without direct light
+  vec3<double> weight{};    ///< factor for all that comes from behind the vertex
+  std::int32_t face = kNoFace;
+  std::int32_t ended = 0;
+};
+
+/// Kept while a shadow ray is under way: what becomes of the light that it finds.
+struct LightingRecord {
+  vec3<double> weight{};              ///< factor for the radiance of the light's face
+  std::int32_t light_face = kNoFace;  ///< what the shadow ray must hit
+  std::int32_t unused = 0;
+};
+
+/// Intersection bin to path bin: what a shadow ray brought.
+struct DirectLightRecord {
+  vec3<double> radiance{};
+};
+
+/// Path bin, one a slot: which path it is and how far.
+struct PathRecord {
+  std::int32_t pixel = 0;
+  std::int32_t sample = 0;
+  std::int32_t depth = 0;     ///< segments traced so far
+  std::int32_t vertices = 0;  ///< in the slot
+  std::int32_t folded = 0;    ///< 1 when earlier vertices were folded into a FoldRecord
+  std::int32_t unused = 0;
+  double light_u = 0;  ///< where on its light the shadow ray of the next vertex will go
+  double light_v = 0;
+};
+
+/// Path bin, slot_vertices of them a slot.
+struct VertexRecord {
+  vec3<double> radiance{};
+  vec3<double> weight{};
+};
+
+/// Vertices of a path that did not fit its slot, folded.
+struct FoldRecord {
+  vec3<double> radiance{};
+  vec3<double> throughput{};
+};
+
+/// A path whose vertices in the slot wait for their radiance: it ended, or its slot is full.
+struct FinishedRecord {
+  std::int32_t slot = 0;
+  std::int32_t vertices = 0;
+  std::int32_t pixel = 0;
+  std::int32_t sample = 0;
+  std::int32_t folded = 0;
+  std::int32_t ended = 0;
+};
+
+/// The result of a path, for the host. A pixel of -1 is no result.
+struct RadianceRecord {
+  vec3<double> radiance{};
+  std::int32_t pixel = -1;
+  std::int32_t sample = 0;
+};
+
+/// What the firmware tells the host before it signals that a half of the results is ready.
+struct ResultsHeader {
+  std::int32_t records = 0;
+  std::int32_t unused = 0;
+};
+
+}  // namespace path_tracer

@@ -1,0 +1,304 @@
+#pragma once
+
+#include "firmware/path_tracer/sampling/sampling.hpp"
+
+/// Choosing a point of a light as seen from a point that it may light.
+namespace path_tracer {
+
+/// The fields of a LightRecord that say where it is.
+struct LightSurface {
+  Point3 vertex;
+  Direction3 edge1;
+  Direction3 edge2;
+  Direction3 normal;
+};
+
+struct LightSample {
+  Direction3 to_light;  ///< from the lit point to the point of the light
+  /// Cosine at the lit point / (density of to_light in solid angle * area of the light); times the light's
+  /// emission_over_pdf and reflectance / pi this is what the surface reflects. Not positive where the light
+  /// or the surface faces away.
+  poly<double> weight;
+};
+
+/// A density over the unit square that is linear in u and in v, by its values at the corners up to a factor.
+struct Bilinear {
+  poly<double> at_00;
+  poly<double> at_10;  ///< u = 1, v = 0
+  poly<double> at_01;
+  poly<double> at_11;
+};
+
+inline poly<double> lerp(const poly<double>& from, const poly<double>& to, const poly<double>& share) {
+  return from + (to - from) * share;
+}
+
+/// A number in [0, 1] with density in proportion to lerp(at_0, at_1, x), both positive: the integral's
+/// quadratic solved for x, without cancellation.
+inline poly<double> sample_linear(const poly<double>& u, const poly<double>& at_0, const poly<double>& at_1) {
+  const poly<double> root = cn::sqrt(lerp(at_0 * at_0, at_1 * at_1, u));
+  return cn::min(u * (at_0 + at_1) / (at_0 + root), poly<double>(1.0));
+}
+
+/// A point of the unit square.
+struct SquareSample {
+  poly<double> u;
+  poly<double> v;
+  poly<double> inverse_pdf;
+};
+
+/// Warps uniform numbers to the density (Hart, Pharr, Mueller, Lopes, McGuire, Shirley, "Practical Product
+/// Sampling by Fitting and Composing Warps", CGF 39(4), 2020): v by its marginal, then u.
+inline SquareSample sample_bilinear(const Bilinear& f, const poly<double>& u, const poly<double>& v) {
+  const poly<double> at_v0 = f.at_00 + f.at_10;
+  const poly<double> at_v1 = f.at_01 + f.at_11;
+  const poly<double> y = sample_linear(v, at_v0, at_v1);
+  const poly<double> at_u0 = lerp(f.at_00, f.at_01, y);
+  const poly<double> at_u1 = lerp(f.at_10, f.at_11, y);
+  const poly<double> x = sample_linear(u, at_u0, at_u1);
+  return {x, y, (at_v0 + at_v1) * 0.25 / lerp(at_u0, at_u1, x)};
+}
+
+/// A cosine as a corner value: positive, so that no direction above the horizon has density 0.
+inline constexpr double kLeastCornerCosine = 0.01;
+inline poly<double> corner_value(const poly<double>& cosine) {
+  return cn::max(cosine, poly<double>(kLeastCornerCosine));
+}
+/// The same for a cosine that is height / distance, times the distance.
+inline poly<double> corner_height(const poly<double>& height, const poly<double>& distance) {
+  return cn::max(height, distance * kLeastCornerCosine);
+}
+
+/// The point that to_light reaches, uniform in area; both cosines are scaled by the distance.
+inline LightSample weigh_by_area(const Direction3& to_light, const Direction3& light_normal,
+                                 const Direction3& normal) {
+  const poly<double> distance_squared = dot(to_light, to_light);
+  const poly<double> cosine_here = dot(to_light, normal);
+  const poly<double> cosine_there = -dot(to_light, light_normal);
+  const poly<double> geometry = cosine_here * cosine_there / (distance_squared * distance_squared);
+  const mask faces = (cosine_here > 0.0) & (cosine_there > 0.0);
+  return {to_light, cn::select(faces, geometry, poly<double>(0.0))};
+}
+
+/// A triangle, uniform in area.
+inline LightSample sample_light_area(const LightSurface& light, const Point3& position,
+                                     const Direction3& normal, const poly<double>& u, const poly<double>& v) {
+  const Point3 on_light = sample_triangle(light.vertex, light.edge1, light.edge2, u, v);
+  return weigh_by_area(on_light - position, light.normal, normal);
+}
+
+/// Below this solid angle rounding would show, and a point uniform in area is as good: the light is small for
+/// its distance, or seen edge on.
+inline constexpr double kLeastSolidAngle = 1e-6;
+
+/// Keeps quotients and roots of what rounding may take to zero or below it finite.
+inline poly<double> at_least_tiny(const poly<double>& value) {
+  return cn::max(value, poly<double>(1e-30));
+}
+
+/// What a difference of squares keeps at least of their sum, for the same reason and at any scale.
+inline constexpr double kLeastShare = 1e-30;
+inline constexpr double kNotZero = 1e-280;
+
+/// A direction in the solid angle that a light takes.
+struct SolidAngleSample {
+  Direction3 to_light;
+  poly<double> solid_angle;
+  poly<double> inverse_pdf;  ///< over the unit square that is mapped onto the solid angle
+};
+
+inline LightSample weigh_by_solid_angle(const SolidAngleSample& sample, const Direction3& normal,
+                                        const poly<double>& area) {
+  const poly<double> distance = cn::sqrt(dot(sample.to_light, sample.to_light));
+  return {sample.to_light,
+          dot(sample.to_light, normal) * sample.solid_angle * sample.inverse_pdf / (distance * area)};
+}
+
+/// A rectangle from a point in front of it. In coordinates along its edges its corners are (x0|x1, y0|y1,
+/// -z), r are their distances.
+///
+/// The angles of the complex numbers z r + i x y are the arcsines that take the place of Urena's arccosines,
+/// and products of such numbers add angles. So one arctangent does for four arccosines, whose arguments
+/// rounding could not be trusted to keep within [-1, 1].
+struct RectangleView {
+  poly<double> inverse_length1, inverse_length2;
+  poly<double> area;
+  poly<double> x0, x1, y0, y1, z;
+  poly<double> r00, r10, r01, r11;
+  poly<double> left_real, left_imaginary;  ///< angle of the arc between the corners at x0, in (-pi, pi)
+  poly<double> solid_angle;
+};
+
+inline RectangleView view_rectangle(const LightSurface& light, const Direction3& to_vertex) {
+  RectangleView view;
+  const poly<double> length1 = cn::sqrt(dot(light.edge1, light.edge1));
+  const poly<double> length2 = cn::sqrt(dot(light.edge2, light.edge2));
+  view.area.become(length1 * length2);
+  const poly<double> inverse_area = 1.0 / view.area;
+  view.inverse_length1.become(length2 * inverse_area);
+  view.inverse_length2.become(length1 * inverse_area);
+  view.x0.become(dot(to_vertex, light.edge1) * view.inverse_length1);
+  view.y0.become(dot(to_vertex, light.edge2) * view.inverse_length2);
+  view.x1.become(view.x0 + length1);
+  view.y1.become(view.y0 + length2);
+  view.z.become(-dot(to_vertex, light.normal));
+  const poly<double> zz = view.z * view.z;
+  const poly<double> x0_squared = view.x0 * view.x0;
+  const poly<double> x1_squared = view.x1 * view.x1;
+  const poly<double> y0z_squared = view.y0 * view.y0 + zz;
+  const poly<double> y1z_squared = view.y1 * view.y1 + zz;
+  view.r00.become(cn::sqrt(x0_squared + y0z_squared));
+  view.r10.become(cn::sqrt(x1_squared + y0z_squared));
+  view.r01.become(cn::sqrt(x0_squared + y1z_squared));
+  view.r11.become(cn::sqrt(x1_squared + y1z_squared));
+  const poly<double> yy = view.y1 * view.y0;
+  view.left_real.become(zz * view.r01 * view.r00 + x0_squared * yy);
+  view.left_imaginary.become(view.z * view.x0 * (view.y1 * view.r00 - view.y0 * view.r01));
+  const poly<double> right_real = zz * view.r11 * view.r10 + x1_squared * yy;
+  const poly<double> right_imaginary = view.z * view.x1 * (view.y1 * view.r10 - view.y0 * view.r11);
+  const poly<double> turn = cn::atan2(right_imaginary * view.left_real - right_real * view.left_imaginary,
+                                      right_real * view.left_real + right_imaginary * view.left_imaginary);
+  view.solid_angle.become(cn::select(turn < 0.0, turn + 2.0 * kPi, turn));  // at most 2 pi
+  return view;
+}
+
+/// The x that has the share u of the solid angle to its left. Urena's quotients, all over the same
+/// denominators and so without them.
+inline poly<double> rectangle_column(const RectangleView& view, const poly<double>& u) {
+  const poly<double> zz = view.z * view.z;
+  const poly<double> y0z_squared = view.y0 * view.y0 + zz;
+  const cn::SineCosine part = cn::sincos(u * view.solid_angle);
+  const poly<double> real = view.left_real * part.cosine - view.left_imaginary * part.sine;
+  const poly<double> imaginary = view.left_imaginary * part.cosine + view.left_real * part.sine;
+  const poly<double> lean = view.y1 * (view.x0 * view.x0 + zz) * y0z_squared - view.y0 * real;
+  const poly<double> across = view.z * imaginary;
+  const poly<double> size_squared = lean * lean - across * across;
+  const poly<double> least = (lean * lean + across * across) * kLeastShare + kNotZero;
+  const poly<double> x = cn::flip_sign(across, lean) * cn::sqrt(y0z_squared / cn::max(size_squared, least));
+  return cn::min(cn::max(x, view.x0), view.x1);
+}
+
+/// Within a column the sine of the elevation is uniform.
+inline poly<double> rectangle_row(const RectangleView& view, const poly<double>& x, const poly<double>& v) {
+  const poly<double> column_squared = x * x + view.z * view.z;
+  const poly<double> low_size = cn::sqrt(column_squared + view.y0 * view.y0);
+  const poly<double> high_size = cn::sqrt(column_squared + view.y1 * view.y1);
+  // The sine and its 1, both times the same size.
+  const poly<double> one = low_size * high_size;
+  const poly<double> sine = lerp(view.y0 * high_size, view.y1 * low_size, v);
+  const poly<double> cosine_squared = cn::max((one - sine) * (one + sine), one * one * kLeastShare);
+  const poly<double> y = sine * cn::sqrt(column_squared / cosine_squared);
+  return cn::min(cn::max(y, view.y0), view.y1);
+}
+
+/// Uniform in solid angle (Urena, Fajardo, King, "An Area-Preserving Parametrization for Spherical
+/// Rectangles", CGF 32(4), 2013) under a warp to the cosine.
+inline SolidAngleSample sample_rectangle(const LightSurface& light, const RectangleView& view,
+                                         const Direction3& to_vertex, const Direction3& normal,
+                                         const poly<double>& u, const poly<double>& v) {
+  const poly<double> height_00 = dot(to_vertex, normal);
+  const poly<double> along1 = dot(light.edge1, normal);
+  const poly<double> along2 = dot(light.edge2, normal);
+  // Each cosine is height / r, and the warp asks for their proportions only.
+  const poly<double> r00_r11 = view.r00 * view.r11;
+  const poly<double> r10_r01 = view.r10 * view.r01;
+  const SquareSample warped =
+      sample_bilinear({corner_height(height_00, view.r00) * view.r11 * r10_r01,
+                       corner_height(height_00 + along1, view.r10) * view.r01 * r00_r11,
+                       corner_height(height_00 + along2, view.r01) * view.r10 * r00_r11,
+                       corner_height(height_00 + along1 + along2, view.r11) * view.r00 * r10_r01},
+                      u, v);
+  const poly<double> x = rectangle_column(view, warped.u);
+  const poly<double> y = rectangle_row(view, x, warped.v);
+  return {to_vertex + light.edge1 * ((x - view.x0) * view.inverse_length1) +
+              light.edge2 * ((y - view.y0) * view.inverse_length2),
+          view.solid_angle, warped.inverse_pdf};
+}
+
+/// Unit vectors to a triangle's corners, turning left as seen from its front.
+struct TriangleView {
+  Direction3 a, b, c;
+  poly<double> volume;  ///< a . (b x c), positive in front of it
+  poly<double> solid_angle;
+};
+
+inline Direction3 unit(const Direction3& v) {
+  return v * (1.0 / cn::sqrt(at_least_tiny(dot(v, v))));
+}
+
+/// Solid angle after Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983.
+inline TriangleView view_triangle(const LightSurface& light, const Direction3& to_vertex) {
+  const Direction3 a = unit(to_vertex);
+  const Direction3 b = unit(to_vertex + light.edge2);
+  const Direction3 c = unit(to_vertex + light.edge1);
+  const poly<double> volume = dot(a, cross(b, c));
+  return {a, b, c, volume, 2.0 * cn::atan2(volume, 1.0 + dot(a, b) + dot(b, c) + dot(c, a))};
+}
+
+/// The point at the given cosine from `from` on the great circle towards `to`.
+inline Direction3 on_arc(const Direction3& from, const Direction3& to, const poly<double>& cosine) {
+  const Direction3 across = unit(to - from * dot(from, to));
+  return from * cosine + across * cn::sqrt(cn::max(1.0 - cosine * cosine, poly<double>(0.0)));
+}
+
+/// Uniform in solid angle (Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995) under a warp to
+/// the cosine: c moves along its side until the triangle has the share u of its solid angle, then v chooses
+/// between b and there. The angle at `a` enters by its sine and cosine only.
+inline SolidAngleSample sample_spherical_triangle(const TriangleView& view, const Direction3& light_normal,
+                                                  const poly<double>& z, const Direction3& normal,
+                                                  const poly<double>& u, const poly<double>& v) {
+  const poly<double> corner_a = corner_value(dot(view.a, normal));
+  const poly<double> corner_b = corner_value(dot(view.b, normal));
+  const poly<double> corner_c = corner_value(dot(view.c, normal));
+  const SquareSample warped = sample_bilinear({corner_b, corner_b, corner_a, corner_c}, u, v);
+
+  const Direction3 ab = cross(view.a, view.b);
+  const Direction3 ac = cross(view.a, view.c);
+  const poly<double> scale = 1.0 / cn::sqrt(at_least_tiny(dot(ab, ab) * dot(ac, ac)));
+  const poly<double> cosine_a = dot(ab, ac) * scale;
+  const poly<double> sine_a = view.volume * scale;
+  const cn::SineCosine part = cn::sincos(warped.u * view.solid_angle);
+  const poly<double> s = part.sine * cosine_a - part.cosine * sine_a;
+  const poly<double> t = part.cosine * cosine_a + part.sine * sine_a;
+  const poly<double> p = t - cosine_a;
+  const poly<double> q = s + sine_a * dot(view.a, view.b);
+  const poly<double> cosine_side = ((q * t - p * s) * cosine_a - q) / ((q * s + p * t) * sine_a);
+  const poly<double> within = cn::min(cn::max(cosine_side, poly<double>(-1.0)), poly<double>(1.0));
+  const Direction3 moved = on_arc(view.a, view.c, within);
+  const Direction3 direction = on_arc(view.b, moved, 1.0 - warped.v * (1.0 - dot(moved, view.b)));
+  const poly<double> distance = z / at_least_tiny(-dot(direction, light_normal));
+  return {direction * distance, view.solid_angle, warped.inverse_pdf};
+}
+
+/// Uniform in solid angle but for the warp to the cosine; uniform in area where the solid angle is too small.
+inline LightSample sample_light_solid_angle(const LightSurface& light, const poly<std::int32_t>& shape,
+                                            const Point3& position, const Direction3& normal,
+                                            const poly<double>& u, const poly<double>& v) {
+  const Direction3 to_vertex = light.vertex - position;
+  const poly<double> z = -dot(to_vertex, light.normal);
+  const mask is_rectangle = shape == static_cast<std::int32_t>(LightShape::rectangle);
+  const Direction3 in_rectangle = to_vertex + light.edge1 * u + light.edge2 * v;
+  const Direction3 in_triangle = sample_triangle(to_vertex, light.edge1, light.edge2, u, v);
+  LightSample sample =
+      weigh_by_area(cn::select(is_rectangle, in_rectangle, in_triangle), light.normal, normal);
+  const auto take = [&](const LightSample& other) {
+    sample.to_light = other.to_light;
+    sample.weight = other.weight;
+  };
+  cn::poly_if_any(is_rectangle, [&] {
+    const RectangleView view = view_rectangle(light, to_vertex);
+    cn::poly_if((z > 0.0) & (view.solid_angle > kLeastSolidAngle), [&] {
+      take(weigh_by_solid_angle(sample_rectangle(light, view, to_vertex, normal, u, v), normal, view.area));
+    });
+  });
+  cn::poly_if_any(!is_rectangle, [&] {
+    const TriangleView view = view_triangle(light, to_vertex);
+    cn::poly_if((z > 0.0) & (view.solid_angle > kLeastSolidAngle), [&] {
+      take(weigh_by_solid_angle(sample_spherical_triangle(view, light.normal, z, normal, u, v), normal,
+                                0.5 * dot(cross(light.edge1, light.edge2), light.normal)));
+    });
+  });
+  return sample;
+}
+
+}  // namespace path_tracer

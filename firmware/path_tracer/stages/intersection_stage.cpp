@@ -1,0 +1,103 @@
+#include <algorithm>
+
+#include "firmware/path_tracer/stages/stages.hpp"
+
+namespace path_tracer {
+
+int IntersectionStage::load_bytes(Program program) {
+  const int bytes = sizeof(HitRecord) + sizeof(SurfaceRecord) + sizeof(PathRecord);
+  return program == Program::segments ? bytes : bytes + int{sizeof(LightRecord)};
+}
+
+int IntersectionStage::save_bytes(const ProgramConfig& config) {
+  const int bytes = sizeof(ScatterRecord);
+  return config.casts_shadow_rays() ? bytes + int{sizeof(LightingRecord)} + ray_bytes(config) : bytes;
+}
+
+IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
+  BufferCutter cutter(context_.loads.buffer(step));
+  Loads loads;
+  loads.hit = cutter.take<HitRecord>();
+  loads.surface = cutter.take<SurfaceRecord>();
+  BufferCutter same_place(cutter);
+  loads.path = cutter.take<PathRecord>();
+  loads.light = cutter.take<LightRecord>();
+  loads.lighting = same_place.take<LightingRecord>();
+  return loads;
+}
+
+IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
+  BufferCutter cutter(context_.saves.buffer(step));
+  BufferCutter same_place(cutter);
+  Saves saves;
+  saves.scatter = cutter.take<ScatterRecord>();
+  saves.lighting = cutter.take<LightingRecord>();
+  saves.shadow_ray = take_ray(cutter);
+  saves.direct_light = same_place.take<DirectLightRecord>();
+  return saves;
+}
+
+void IntersectionStage::load(std::uint64_t step, int block) {
+  context_.saves.wait_block(block);
+  const Loads to = loads(step);
+  const Bins::Block& bin = bin_block(block);
+  const LaneMask segments = bin.segments();
+  load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live);
+  context_.loads.copy_m2p(step, block, to.surface.span(), context_.machine.places_in(bin.surface_place),
+                          bin.hit_something);
+  load_block(step, block, to.path, context_.layout.path_bin, segments);
+  if (!context_.config.casts_shadow_rays()) return;
+  context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),
+                          segments);
+  load_block(step, block, to.lighting, context_.layout.lighting_bin, bin.shadow);
+}
+
+void IntersectionStage::process(std::uint64_t step, int block) {
+  const Loads from = loads(step);
+  const Saves to = saves(step);
+  scatter(from, to, block);
+  if (context_.config.casts_shadow_rays()) illuminate(from, to, block);
+}
+
+void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
+  Bins::Block& bin = bin_block(block);
+  bin.casts = LaneMask{};
+  ScatterArguments arguments;
+  arguments.hit = from.hit;
+  arguments.surface = from.surface;
+  arguments.path = from.path;
+  arguments.light = from.light;
+  arguments.sampler = context_.config.sampler;
+  arguments.light_sampling = context_.config.light_sampling;
+  arguments.seed = context_.config.seed;
+  arguments.roulette_start = context_.config.roulette_start;
+  arguments.max_survival = context_.config.max_survival;
+  arguments.casts_shadow_rays = context_.config.casts_shadow_rays();
+  arguments.cull_shadow_rays = context_.config.cull_shadow_rays;
+  arguments.scatter = to.scatter;
+  arguments.shadow_ray = PolyPointer<RayRecord>(to.shadow_ray.span().offset_bytes);
+  arguments.lighting = to.lighting;
+  arguments.casts = &bin.casts;
+  context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
+}
+
+void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block) {
+  IlluminateArguments arguments;
+  arguments.hit = from.hit;
+  arguments.surface = from.surface;
+  arguments.lighting = from.lighting;
+  arguments.direct_light = to.direct_light;
+  context_.machine.run(context_.kernels.illuminate, arguments, bin_block(block).shadow);
+}
+
+void IntersectionStage::save(std::uint64_t step, int block) {
+  const Saves from = saves(step);
+  const Bins::Block& bin = bin_block(block);
+  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.segments());
+  if (!context_.config.casts_shadow_rays()) return;
+  save_rays(step, block, from.shadow_ray, bin.casts);
+  save_block(step, block, context_.layout.lighting_bin, from.lighting, bin.casts);
+  save_block(step, block, context_.layout.direct_light_bin, from.direct_light, bin.shadow);
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <numeric>
+
+#include "firmware/path_tracer/stages/stages.hpp"
+
+namespace path_tracer {
+
+CameraRays::CameraRays(const Work& work, int pixels)
+    : total_(std::uint64_t(work.samples) * std::uint64_t(pixels)),
+      first_sample_(work.first_sample),
+      pixels_(pixels) {}
+
+PathStage::PathStage(const StageContext& context, const Work& work)
+    : Stage(context),
+      camera_rays_(work,
+                   [&] {
+                     const CameraRecord& camera = *context.machine.read_mono(context.layout.camera);
+                     return camera.width * camera.height;
+                   }()),
+      number_{context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes},
+      segments_(std::size_t(context.config.bin_blocks) * std::size_t(context.machine.num_pes())) {
+  const int pixels = camera_rays_.pixels();
+  const int stride = context.config.pixel_stride;
+  if (pixels > 1 && std::gcd(stride, pixels) != 1)
+    throw ProgramError("pixel stride: found " + std::to_string(stride) +
+                       ", which has a divisor in common with the " + std::to_string(pixels) +
+                       " pixels of the film; allowed is any number without");
+}
+
+PathStage::Loads PathStage::loads(std::uint64_t step) const {
+  BufferCutter cutter(context_.loads.buffer(step));
+  return {cutter.take<PathRecord>(), cutter.take<ScatterRecord>(), cutter.take<DirectLightRecord>()};
+}
+
+PathStage::Saves PathStage::saves(std::uint64_t step) const {
+  BufferCutter cutter(context_.saves.buffer(step));
+  return {cutter.take<VertexRecord>(), cutter.take<PathRecord>(), cutter.take<FinishedRecord>(),
+          cutter.take_place(),         cutter.take_place(),       take_ray(cutter)};
+}
+
+void PathStage::load(std::uint64_t step, int block) {
+  context_.saves.wait_block(block);
+  const Loads to = loads(step);
+  const Bins::Block& bin = bin_block(block);
+  const LaneMask ready = bin.ready();
+  load_block(step, block, to.path, context_.layout.path_bin, ready);
+  load_block(step, block, to.scatter, context_.layout.scatter_bin, ready);
+  if (context_.config.casts_shadow_rays())
+    load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.shadow);
+}
+
+void PathStage::process(std::uint64_t step, int block) {
+  append_vertices(step, block);
+  count_segments(block);
+  const int ended_count = context_.machine.count(ended_);
+  list_finished(step);
+  if (!(finished_ == ended_)) {
+    context_.machine.number_ascending(ended_, number_);
+    context_.counts.folds += std::uint64_t(finished_.count() - ended_count);
+  }
+  replace_ended(step, block, ended_count);
+}
+
+void PathStage::append_vertices(std::uint64_t step, int block) {
+  const Bins::Block& bin = bin_block(block);
+  const Loads from = loads(step);
+  const Saves to = saves(step);
+  appended_ = bin.ready();
+  ended_ = LaneMask{};
+  finished_ = LaneMask{};
+  AppendArguments arguments;
+  arguments.path = from.path;
+  arguments.scatter = from.scatter;
+  arguments.direct_light = from.direct_light;
+  arguments.has_direct_light = &bin.shadow;
+  arguments.slot_vertices = context_.config.slot_vertices;
+  arguments.first_slot = static_cast<int>(first_slot(block));
+  arguments.block_vertices =
+      (context_.layout.vertices + first_slot(block) * std::uint64_t(arguments.slot_vertices)).address;
+  arguments.vertex = to.vertex;
+  arguments.vertex_place = to.vertex_place;
+  arguments.finished_record = to.finished;
+  arguments.ended = &ended_;
+  arguments.finished = &finished_;
+  context_.machine.run(context_.kernels.append, arguments, appended_);
+}
+
+/// Beside what the chip does, so it costs nothing.
+void PathStage::count_segments(int block) {
+  std::uint32_t* const of_block = &segments_[std::size_t(first_slot(block))];
+  std::vector<std::uint64_t>& paths = context_.counts.paths_by_segments;
+  for (int strip = 0; strip < num_pes() / cn::kStripLanes; ++strip) {
+    std::uint32_t* const of_strip = of_block + strip * cn::kStripLanes;
+    const std::uint32_t appended = appended_.strip_bits(strip);
+    for (int i = 0; i < cn::kStripLanes; ++i) of_strip[i] += (appended >> i) & 1;
+    for (std::uint32_t ended = ended_.strip_bits(strip); ended != 0; ended &= ended - 1) {
+      std::uint32_t& segments = of_strip[__builtin_ctz(ended)];
+      if (segments >= paths.size()) paths.resize(segments + 1);
+      ++paths[segments];
+      segments = 0;
+    }
+  }
+}
+
+void PathStage::list_finished(std::uint64_t step) {
+  const int count = context_.machine.number_ascending(finished_, number_);
+  FinishedPlaceArguments arguments;
+  arguments.number = number_;
+  arguments.next_finished = (context_.layout.finished + std::uint64_t(finished_count_)).address;
+  arguments.finished_place = saves(step).finished_place;
+  context_.machine.run(context_.kernels.finished_place, arguments, finished_);
+  finished_count_ += count;
+}
+
+void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
+  Bins::Block& bin = bin_block(block);
+  const Loads from = loads(step);
+  const Saves to = saves(step);
+  const auto started = static_cast<std::int32_t>(
+      std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
+  replaced_ = LaneMask{};
+  ReplaceArguments arguments;
+  arguments.path = from.path;
+  arguments.scatter = from.scatter;
+  arguments.number = number_;
+  arguments.ended = &ended_;
+  arguments.finished = &finished_;
+  arguments.camera = context_.machine.read_mono(context_.layout.camera);
+  if (context_.config.casts_shadow_rays()) {
+    arguments.light_count = context_.layout.light_count;
+    arguments.light_cdf =
+        context_.machine.read_mono(context_.layout.light_cdf, std::size_t(arguments.light_count));
+    arguments.lights = context_.layout.lights.address;
+    arguments.light_place = bin.light_place;
+  }
+  arguments.sampler = context_.config.sampler;
+  arguments.seed = context_.config.seed;
+  arguments.next_pixel = camera_rays_.next_pixel();
+  arguments.next_sample = camera_rays_.next_sample();
+  arguments.pixel_stride = context_.config.pixel_stride % camera_rays_.pixels();
+  arguments.remaining = started;
+  arguments.next_path = to.path;
+  arguments.ray = PolyPointer<RayRecord>(to.ray.span().offset_bytes);
+  arguments.live = &replaced_;
+  context_.machine.run(context_.kernels.replace, arguments, appended_);
+  camera_rays_.issue(std::uint64_t(started));
+  bin.live = replaced_.with(bin.casts);
+  bin.shadow = bin.casts;
+}
+
+void PathStage::fill(std::uint64_t step, int block) {
+  appended_ = LaneMask::first(num_pes());
+  ended_ = appended_;
+  finished_ = LaneMask{};
+  const int count = context_.machine.number_ascending(ended_, number_);
+  replace_ended(step, block, count);
+  appended_ = LaneMask{};
+}
+
+void PathStage::save(std::uint64_t step, int block) {
+  const Saves from = saves(step);
+  if (appended_.any()) {
+    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.vertex_place), from.vertex.span(),
+                            appended_);
+    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place),
+                            from.finished.span(), finished_);
+  }
+  save_block(step, block, context_.layout.path_bin, from.path, replaced_);
+  save_rays(step, block, from.ray, replaced_);
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,35 @@
+#include "firmware/path_tracer/stages/stages.hpp"
+
+namespace path_tracer {
+
+void RayStage::load(std::uint64_t step, int block) {
+  context_.saves.wait_block(block);
+  const PolyPointer<RayRecord> ray(context_.loads.buffer(step));
+  load_block(step, block, ray, context_.layout.ray_bin, bin_block(block).live);
+}
+
+void RayStage::process(std::uint64_t step, int block) {
+  Bins::Block& bin = bin_block(block);
+  bin.hit_something = LaneMask{};
+  IntersectArguments arguments;
+  arguments.ray = PolyPointer<RayRecord>(context_.loads.buffer(step));
+  arguments.triangle_count = context_.layout.triangle_count;
+  arguments.triangles =
+      context_.machine.read_mono(context_.layout.triangles, std::size_t(arguments.triangle_count));
+  if (sieve_.triangles.empty())
+    sieve_ = make_sieve(arguments.triangles, arguments.triangle_count, context_.layout.reach);
+  arguments.sieve = &sieve_;
+  arguments.reach = context_.layout.reach;
+  arguments.surfaces = context_.layout.surfaces.address;
+  arguments.hit = PolyPointer<HitRecord>(context_.saves.buffer(step));
+  arguments.surface_place = bin.surface_place;
+  arguments.hit_something = &bin.hit_something;
+  context_.machine.run(context_.kernels.intersect, arguments, bin.live);
+}
+
+void RayStage::save(std::uint64_t step, int block) {
+  const PolyPointer<HitRecord> hit(context_.saves.buffer(step));
+  save_block(step, block, context_.layout.intersection_bin, hit, bin_block(block).live);
+}
+
+}  // namespace path_tracer

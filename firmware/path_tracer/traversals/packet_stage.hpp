@@ -1,0 +1,69 @@
+#pragma once
+
+#include "firmware/path_tracer/kernels/packet_kernels.hpp"
+#include "firmware/path_tracer/traversals/tree_stage.hpp"
+
+/// Coherent packets, for comparison: a block of rays shares one traversal (Wald, Slusallek, Benthin, Wagner,
+/// "Interactive Rendering with Coherent Ray Tracing", Eurographics 2001; Boulos et al., "Packet-based Whitted
+/// and Distribution Ray Tracing", GI 2007). The control unit goes through the tree and hands nodes and
+/// triangles to all PEs; no PE loads any of them. A node is visited when one ray of the block wants it.
+namespace path_tracer {
+
+/// Ray bin: takes a block of rays through the whole tree. Its blocks are the ray bin's, packed.
+class PacketStage : public TreeStage {
+ public:
+  PacketStage(const StageContext& context, TreeContext& tree);
+
+  const char* bin() const override { return "ray bin"; }
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int /*block*/) override { save_hits(step); }
+
+ private:
+  /// What the packet has yet to come to, on the control unit's stack.
+  struct Entry {
+    ChildReference reference;
+    int level = 0;  ///< of the node
+    int place = 0;  ///< of the rays' keys for it
+  };
+
+  LaneMask begin(std::uint64_t step);
+  void test_lights(LaneMask seeks_light);
+  std::int32_t least_light(const LaneMask& rays);
+  LaneMask rays_with_light(std::int32_t light, const LaneMask& rays);
+  void walk();
+  LaneMask rays_that_want(const Entry& entry);
+  void visit(const Entry& entry, const LaneMask& rays);
+  void push_children(const MonoNode& node, int level, const LaneMask* enters_first);
+  void test_leaf(std::int32_t first_triangle, std::int32_t count, const LaneMask& rays);
+
+  const PacketKernels& packet_kernels_;
+  PolyPointer<TraversalRecord> record_;  ///< of the block that is processed
+  PolyPointer<PacketRecord> packet_;
+  PacketKeys keys_;
+  MonoNodes nodes_;
+  LaneMask rays_;
+  std::vector<Entry> stack_;
+};
+
+class PacketTraversal : public TreeTraversal {
+ public:
+  PacketTraversal(const StageContext& context, TreeContext& tree)
+      : TreeTraversal(context, tree),
+        queue_(*context.queue),
+        num_pes_(context.machine.num_pes()),
+        stage_(context, tree) {}
+
+  void after_step(const Stage& /*stage*/, int /*block*/, const Plan& /*plan*/) override {}
+  bool has(const Stage& stage) const override { return &stage == &stage_; }
+
+ protected:
+  void plan_first(const Plan& plan) override;
+
+ private:
+  RayQueue& queue_;
+  int num_pes_;
+  PacketStage stage_;
+};
+
+}  // namespace path_tracer

@@ -1,7 +1,0 @@
-#include "firmware/path_tracer/traverse.hpp"
-
-namespace path_tracer {
-
-template const TraverseKernels& TRAVERSE_KERNELS<8>();
-
-}  // namespace path_tracer

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "firmware/cn/chip/instruction.hpp"
+
+namespace model {
+
+enum class PioArbitration : std::uint8_t { strict_fifo, reads_overtake_writes, queue_per_direction };
+
+/// Every number of the chip. Defaults, units, meaning, range, confidence and source of each are in the
+/// parameter table (chip_parameters.hpp), which is the only place that knows the keys.
+struct ChipConfig {
+  std::string preset;
+
+  struct Chip {
+    double clock_hz;
+    int pes;
+  } chip;
+
+  struct Poly {
+    int sram_bytes;
+    double code_quality_factor;  ///< cycles of code = this x (instructions . cost table)
+    bool vector_loads_overlap;   ///< with vector arithmetic of the same kernel
+    std::array<double, cn::kInstructionClasses> cycles;  ///< by instruction class; `sram` is per 4-byte word
+  } poly;
+
+  struct Control {
+    int data_cache_bytes;
+    int cache_line_bytes;
+    int cache_miss_cycles;     ///< in the control unit, on top of what the memory takes
+    int semaphore_cycles;      ///< a signal or an unblocked wait
+    int transfer_call_cycles;  ///< software that starts an asynchronous copy
+    int threads;               ///< hardware threads, the firmware's first one included
+    int thread_switch_cycles;  ///< from one hardware thread to another
+  } control;
+
+  struct Pio {
+    PioArbitration arbitration;
+    int queue_depth;
+    int setup_cycles;         ///< a request
+    int per_pe_cycles;        ///< a participating PE
+    int bytes_per_cycle;      ///< into or out of one PE
+    int misalignment_cycles;  ///< a PE whose piece is off 8 bytes or spread over more packets than it needs
+    bool consolidate_equal_addresses;
+    int stolen_sram_cycles;   ///< SRAM port cycles taken for 8 bytes
+    int outstanding_packets;  ///< on the way at a time; loosely timed there is no bound
+  } pio;
+
+  struct ClearConnect {
+    int bytes_per_cycle;
+    int packet_bytes;
+    int hop_cycles;
+    int hops_to_ddr;
+  } clear_connect;
+
+  struct Ddr {
+    std::uint64_t size_bytes;
+    int banks;
+    int page_bytes;
+    int bytes_per_cycle;
+    int page_hit_cycles;
+    int page_miss_cycles;
+    int turn_round_cycles;
+    int refresh_interval_cycles;  ///< 0: no refresh
+    int refresh_cycles;
+    int ecc_cycles;          ///< added to each access
+    int queue_transactions;  ///< taken at a time; loosely timed there is no bound
+  } ddr;
+
+  struct Host {
+    double bytes_per_second;
+    int latency_cycles;  ///< of one host DMA
+  } host;
+
+  /// What things take in joules, to first order. Counters times these after the run; no cycle depends on
+  /// them.
+  struct Energy {
+    double chip_scale;                                       ///< factor for all on-chip picojoules below
+    std::array<double, cn::kInstructionClasses> picojoules;  ///< of an enabled PE, by class; `mono` is unused
+    double pe_clock_picojoules;                              ///< a PE and cycle, enabled or not
+    double control_unit_picojoules;                          ///< a cycle that the control unit does not wait
+    double pio_picojoules_per_byte;                          ///< moved by the PIO engine
+    double clear_connect_picojoules;                         ///< a byte and hop
+    double leakage_watts_per_pe;
+    double leakage_watts;            ///< of all but the PEs
+    double ddr_activate_picojoules;  ///< a page miss
+    double ddr_read_picojoules;      ///< a byte
+    double ddr_write_picojoules;     ///< a byte
+    double ddr_refresh_picojoules;   ///< a refresh
+    double ddr_background_watts;
+  } energy;
+};
+
+}  // namespace model

@@ -1,0 +1,122 @@
+#include "model/dma/at_pio.hpp"
+
+#include <algorithm>
+
+namespace model {
+
+AtPio::AtPio(Agenda& agenda, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
+             const PioTiming& timing, MonoWindow& mono, Owner owner)
+    : agenda_(agenda),
+      memory_(memory),
+      initiator_(
+          agenda, memory,
+          {[this](auto& packet) { sent(packet); }, [this](auto& packet) { return responded(packet); }}),
+      timing_(timing),
+      mono_(mono),
+      owner_(std::move(owner)),
+      packet_bytes_(std::uint64_t(config.clear_connect.packet_bytes)),
+      outstanding_packets_(std::size_t(config.pio.outstanding_packets)) {}
+
+void AtPio::start(int engine, const MonoPieces& pieces) {
+  engines_[std::size_t(engine)] = {
+      &pieces, PacketCursor(pieces, packet_bytes_), PacketCursor(pieces, packet_bytes_), false, 0, 0, 0};
+  begin_phase(engine, Phase::setup, timing_.setup_cycles());
+}
+
+void AtPio::step(int index) {
+  Engine& engine = engines_[std::size_t(index)];
+  if (engine.pieces == nullptr) return;
+  send_packets(index);
+  if (!engine.busy) begin_phase(index);
+  if (!is_over(engine)) return;
+  engine.pieces = nullptr;
+  owner_.finished(index);
+}
+
+void AtPio::send_packets(int index) {
+  Engine& engine = engines_[std::size_t(index)];
+  for (; packet_is_due(engine) && room(); engine.next_to_send.advance()) {
+    const PacketCursor::Packet& next = engine.next_to_send.packet();
+    tlm::tlm_generic_payload& packet = pool_.take(
+        engine.pieces->write() ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND, next.address, next.bytes);
+    if (engine.pieces->write())
+      mono_.read(next.address, packet.get_data_ptr(), next.bytes, *memory_.operator->());
+    on_the_way_.push_back({&packet, index});
+    if (!initiator_.send(packet)) ++engine.unsent;
+  }
+}
+
+bool AtPio::packet_is_due(const Engine& engine) const {
+  if (engine.next_to_send.at_end()) return false;
+  const PacketCursor::Packet& packet = engine.next_to_send.packet();
+  return (engine.pieces->write() ? packet.last_piece : packet.first_piece) < engine.addressed;
+}
+
+/// Responses come in the order of the requests: there is one way through the network.
+bool AtPio::data_of_next_piece_are_there(const Engine& engine) const {
+  return engine.moved < engine.addressed &&
+         (engine.next_to_arrive.at_end() || engine.next_to_arrive.packet().first_piece > engine.moved);
+}
+
+void AtPio::begin_phase(int index) {
+  const Engine& engine = engines_[std::size_t(index)];
+  const MonoPieces& pieces = *engine.pieces;
+  if (engine.addressed < pieces.pieces() && !packet_is_due(engine) && room()) {
+    begin_phase(index, Phase::address,
+                timing_.address_cycles(pieces, engine.addressed) +
+                    (pieces.write() ? timing_.data_cycles(pieces) : 0));
+  } else if (!pieces.write() && data_of_next_piece_are_there(engine)) {
+    begin_phase(index, Phase::data, timing_.data_cycles(pieces));
+  }
+}
+
+void AtPio::begin_phase(int index, Phase phase, Cycles cycles) {
+  engines_[std::size_t(index)].busy = true;
+  agenda_.at(agenda_.now() + cycles, [this, index, phase] { end_phase(index, phase); });
+}
+
+void AtPio::end_phase(int index, Phase phase) {
+  Engine& engine = engines_[std::size_t(index)];
+  engine.busy = false;
+  if (phase == Phase::address) ++engine.addressed;
+  if (phase == Phase::data) ++engine.moved;
+  if (phase == (engine.pieces->write() ? Phase::address : Phase::data))
+    bytes_moved_ += std::uint64_t(engine.pieces->bytes_per_pe());
+  step(index);
+}
+
+bool AtPio::is_over(const Engine& engine) const {
+  if (engine.busy) return false;
+  if (!engine.pieces->write()) return engine.moved == engine.pieces->pieces();
+  return engine.next_to_send.at_end() && engine.unsent == 0;
+}
+
+void AtPio::refresh_writes_on_the_way() {
+  for (const OnTheWay& way : on_the_way_)
+    if (way.packet->is_write())
+      mono_.read(way.packet->get_address(), way.packet->get_data_ptr(), way.packet->get_data_length(),
+                 *memory_.operator->());
+}
+
+std::vector<AtPio::OnTheWay>::iterator AtPio::find(const tlm::tlm_generic_payload& packet) {
+  return std::find_if(on_the_way_.begin(), on_the_way_.end(),
+                      [&](const OnTheWay& way) { return way.packet == &packet; });
+}
+
+void AtPio::sent(const tlm::tlm_generic_payload& packet) {
+  const int index = find(packet)->engine;
+  --engines_[std::size_t(index)].unsent;
+  step(index);
+}
+
+Cycles AtPio::responded(tlm::tlm_generic_payload& packet) {
+  if (packet.is_response_error()) owner_.failed(packet);
+  const auto way = find(packet);
+  if (packet.is_read()) engines_[std::size_t(way->engine)].next_to_arrive.advance();
+  on_the_way_.erase(way);
+  packet.release();
+  for (int index = 0; index < int(engines_.size()); ++index) step(index);
+  return agenda_.now();
+}
+
+}  // namespace model

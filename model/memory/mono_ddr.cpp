@@ -1,0 +1,123 @@
+#include "model/memory/mono_ddr.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "model/time/annotated_delay.hpp"
+
+namespace model {
+
+MonoDdr::MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+                 Agenda* agenda)
+    : sc_module(name),
+      clock_(clock),
+      timing_(config.ddr),
+      memory_(config.ddr.size_bytes),
+      dmi_latency_cycles_(Cycles(config.ddr.page_hit_cycles)),
+      agenda_(agenda),
+      queue_transactions_(config.ddr.queue_transactions) {
+  socket.register_b_transport(this, &MonoDdr::b_transport);
+  socket.register_transport_dbg(this, &MonoDdr::transport_dbg);
+  socket.register_get_direct_mem_ptr(this, &MonoDdr::get_direct_mem_ptr);
+  if (agenda_ == nullptr) return;
+  socket.register_nb_transport_fw(this, &MonoDdr::nb_transport_fw);
+  at_target_.emplace(*agenda_, AtTarget::Owner{[this](auto& transaction) { return take(transaction); },
+                                               [this](auto& transaction, auto& phase, auto& delay) {
+                                                 return socket->nb_transport_bw(transaction, phase, delay);
+                                               }});
+}
+
+void MonoDdr::b_transport(tlm::tlm_generic_payload& transaction, sc_core::sc_time& delay) {
+  transaction.set_dmi_allowed(true);
+  if (!transaction.is_read() && !transaction.is_write()) {
+    PeAddresses* const addresses = transaction.get_extension<PeAddresses>();
+    transaction.set_response_status(addresses == nullptr ? tlm::TLM_OK_RESPONSE : serve(*addresses, delay));
+    return;
+  }
+  Cycles finish = 0;
+  transaction.set_response_status(access_plainly(transaction, cycle_of_delay(clock_, delay), finish));
+  if (transaction.is_response_ok()) delay = delay_until(clock_, finish);
+}
+
+tlm::tlm_sync_enum MonoDdr::nb_transport_fw(tlm::tlm_generic_payload& transaction, tlm::tlm_phase& phase,
+                                            sc_core::sc_time& delay) {
+  return at_target_->nb_transport_fw(transaction, phase, delay);
+}
+
+std::optional<Cycles> MonoDdr::take(tlm::tlm_generic_payload& transaction) {
+  const Cycles now = agenda_->now();
+  Cycles over = now;
+  transaction.set_dmi_allowed(true);
+  transaction.set_response_status(transaction.get_command() == tlm::TLM_IGNORE_COMMAND
+                                      ? tlm::TLM_OK_RESPONSE
+                                      : access_plainly(transaction, now, over));
+  agenda_->at(over, [this, &transaction] { finish(transaction); });
+  if (++queued_ < queue_transactions_) return now;
+  not_accepted_ = &transaction;
+  return std::nullopt;
+}
+
+void MonoDdr::finish(tlm::tlm_generic_payload& transaction) {
+  --queued_;
+  if (not_accepted_ != nullptr && not_accepted_ != &transaction) at_target_->accept(*not_accepted_);
+  not_accepted_ = nullptr;  // or its response ends its request
+  at_target_->respond(transaction);
+}
+
+tlm::tlm_response_status MonoDdr::access_plainly(const tlm::tlm_generic_payload& transaction, Cycles arrival,
+                                                 Cycles& finish) {
+  const std::uint64_t address = transaction.get_address();
+  const std::uint64_t bytes = transaction.get_data_length();
+  if (!contains(address, bytes)) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  if (transaction.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
+  if (transaction.get_streaming_width() < bytes) return tlm::TLM_BURST_ERROR_RESPONSE;
+  if (transaction.is_write()) {
+    std::memcpy(memory_.data() + address, transaction.get_data_ptr(), bytes);
+  } else {
+    std::memcpy(transaction.get_data_ptr(), memory_.data() + address, bytes);
+  }
+  finish = timing_.access(address, bytes, transaction.is_write(), arrival).finish;
+  return tlm::TLM_OK_RESPONSE;
+}
+
+tlm::tlm_response_status MonoDdr::serve(PeAddresses& addresses, sc_core::sc_time& delay) {
+  const MonoPieces& pieces = addresses.pieces;
+  addresses.served = true;
+  addresses.first_data = delay;
+  if (!pieces.within(memory_.size_bytes())) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  if (pieces.runs().empty()) return tlm::TLM_OK_RESPONSE;
+  const Cycles arrival = cycle_of_delay(clock_, delay);
+  const DdrTiming::Access access = timing_.access(pieces.runs(), pieces.write(), arrival);
+  addresses.first_data = delay_until(clock_, access.start);
+  delay = delay_until(clock_, access.finish);
+  return tlm::TLM_OK_RESPONSE;
+}
+
+unsigned int MonoDdr::transport_dbg(tlm::tlm_generic_payload& transaction) {
+  const std::uint64_t address = transaction.get_address();
+  if (address >= memory_.size_bytes()) return 0;
+  const auto bytes = static_cast<unsigned int>(
+      std::min<std::uint64_t>(transaction.get_data_length(), memory_.size_bytes() - address));
+  if (transaction.is_write()) {
+    std::memcpy(memory_.data() + address, transaction.get_data_ptr(), bytes);
+  } else if (transaction.is_read()) {
+    std::memcpy(transaction.get_data_ptr(), memory_.data() + address, bytes);
+  } else {
+    return 0;
+  }
+  return bytes;
+}
+
+bool MonoDdr::get_direct_mem_ptr(tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi) {
+  dmi.init();
+  dmi.set_start_address(0);
+  dmi.set_end_address(memory_.size_bytes() - 1);
+  if (transaction.get_address() >= memory_.size_bytes()) return false;
+  dmi.set_dmi_ptr(memory_.data());
+  dmi.set_read_latency(clock_.time_at(dmi_latency_cycles_));
+  dmi.set_write_latency(clock_.time_at(dmi_latency_cycles_));
+  dmi.allow_read_write();
+  return true;
+}
+
+}  // namespace model

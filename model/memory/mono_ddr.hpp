@@ -1,0 +1,70 @@
+#pragma once
+
+#include <tlm_utils/simple_target_socket.h>
+#include <optional>
+#include <systemc>
+#include <tlm>
+
+#include "model/config/chip_config.hpp"
+#include "model/memory/ddr_timing.hpp"
+#include "model/memory/lazy_memory.hpp"
+#include "model/time/agenda.hpp"
+#include "model/time/clock_domain.hpp"
+#include "model/transaction/at_target.hpp"
+#include "model/transaction/pe_addresses.hpp"
+
+namespace model {
+
+/// Mono memory: DDR2 behind one TLM-2.0 target socket. Reads and writes of any length; no byte enables, no
+/// streaming. The delay in is the arrival of the access, the delay out the cycle after its last byte
+/// (DdrTiming).
+///
+/// A transaction with PeAddresses costs exactly what one transaction a run would, all sent with the same
+/// delay: the runs are booked one after the other from one arrival. The delay out is the end of the last.
+///
+/// With an agenda it also speaks the four phases: it takes up to ddr.queue_transactions, ends the request of
+/// the last one when another is over, and begins the response of each in the cycle after its last byte.
+class MonoDdr : public sc_core::sc_module {
+ public:
+  tlm_utils::simple_target_socket<MonoDdr> socket{"socket"};
+
+  MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+          Agenda* agenda = nullptr);
+
+  const DdrStatistics& statistics() const { return timing_.statistics(); }
+  void set_observer(DdrObserver* observer, bool with_commands) {
+    timing_.set_observer(observer, with_commands);
+  }
+  LazyMemory& memory() { return memory_; }
+
+ private:
+  void b_transport(tlm::tlm_generic_payload& transaction, sc_core::sc_time& delay);
+  unsigned int transport_dbg(tlm::tlm_generic_payload& transaction);
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi);
+
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& transaction, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay);
+
+  std::optional<Cycles> take(tlm::tlm_generic_payload& transaction);
+  void finish(tlm::tlm_generic_payload& transaction);
+  /// Sets `finish` if it returns OK.
+  tlm::tlm_response_status access_plainly(const tlm::tlm_generic_payload& transaction, Cycles arrival,
+                                          Cycles& finish);
+  tlm::tlm_response_status serve(PeAddresses& addresses, sc_core::sc_time& delay);
+  bool contains(std::uint64_t address, std::uint64_t bytes) const {
+    return address <= memory_.size_bytes() && bytes <= memory_.size_bytes() - address;
+  }
+
+  ClockDomain clock_;
+  DdrTiming timing_;
+  LazyMemory memory_;
+  Cycles dmi_latency_cycles_;
+
+  Agenda* agenda_;
+  std::optional<AtTarget> at_target_;
+  int queue_transactions_;
+  int queued_ = 0;
+  tlm::tlm_generic_payload* not_accepted_ = nullptr;  ///< fills the queue; its request has not been ended
+};
+
+}  // namespace model

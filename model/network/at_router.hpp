@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <systemc>
+#include <tlm>
+
+#include "model/network/clear_connect_timing.hpp"
+#include "model/time/agenda.hpp"
+#include "model/transaction/at_initiator.hpp"
+#include "model/transaction/at_target.hpp"
+
+namespace model {
+
+/// How packets cross ClearConnect approximately timed. Times are those of ClearConnectTiming, asked packet by
+/// packet in the cycle in which each enters a link, so that initiators contend packet by packet:
+/// - A request ends (END_REQ) when the initiator's link is free again.
+/// - It reaches the memory when the port has let it through, or when the memory has ended the request before.
+/// - Read data occupy the port when the memory begins its response, which ends (END_RESP) when the port is
+/// free
+///   again; the initiator's response begins when the last byte is there. A write's response says that the
+///   memory has the last byte; nothing crosses the network for it.
+///
+/// What waits for the memory stands in one line. It is bounded by what initiators have on the way.
+class AtRouter {
+ public:
+  using Backward = std::function<tlm::tlm_sync_enum(int initiator, tlm::tlm_generic_payload&, tlm::tlm_phase&,
+                                                    sc_core::sc_time&)>;
+
+  AtRouter(Agenda& agenda, ClearConnectTiming& timing, tlm::tlm_initiator_socket<>& memory,
+           const Backward& backward);
+
+  tlm::tlm_sync_enum nb_transport_fw(int initiator, tlm::tlm_generic_payload& packet, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) {
+    return initiators_[std::size_t(initiator)]->nb_transport_fw(packet, phase, delay);
+  }
+  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& packet, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) {
+    return memory_.nb_transport_bw(packet, phase, delay);
+  }
+
+ private:
+  /// Where a packet comes from and how far it is; stays with the payload.
+  struct Route : tlm::tlm_extension<Route> {
+    Initiator initiator = Initiator::pio;
+    Cycles at_memory = 0;   ///< its first byte
+    Cycles sent_whole = 0;  ///< its last byte is at the memory
+    tlm::tlm_extension_base* clone() const override { return new Route(*this); }
+    void copy_from(const tlm::tlm_extension_base& other) override {
+      *this = static_cast<const Route&>(other);
+    }
+  };
+
+  static Route& route_of(tlm::tlm_generic_payload& packet);
+  Cycles pass_request(Initiator initiator, tlm::tlm_generic_payload& packet);
+  Cycles pass_response(tlm::tlm_generic_payload& packet);
+
+  Agenda& agenda_;
+  ClearConnectTiming& timing_;
+  AtInitiator memory_;
+  std::array<std::optional<AtTarget>, kInitiators> initiators_;
+};
+
+}  // namespace model

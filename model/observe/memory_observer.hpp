@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+#include "model/time/cycles.hpp"
+
+namespace model {
+
+/// Commands that a bank of the DDR gets.
+enum class DdrCommand : std::uint8_t { activate, read, write, refresh };
+
+/// Told what the DDR does when it is booked, which may be ahead of SystemC time: on the data bus in the order
+/// of time, at each bank likewise.
+class DdrObserver {
+ public:
+  virtual ~DdrObserver() = default;
+  /// An access, which may touch many pages, has the data bus from its first byte to after its last.
+  virtual void accessed(bool write, Cycles start, Cycles finish) = 0;
+
+  // Only told to those who ask for commands:
+  /// Data of one page on the bus.
+  virtual void moved_data(bool /*write*/, Cycles /*start*/, Cycles /*finish*/) {}
+  /// Activation includes precharge. All banks are refreshed together: bank -1.
+  virtual void commanded(int /*bank*/, DdrCommand /*command*/, std::uint64_t /*row*/, Cycles /*at*/) {}
+};
+
+enum class Initiator : std::uint8_t;
+
+/// Told who uses the DDR's port of the on-chip network, each way in the order of time.
+class PortObserver {
+ public:
+  virtual ~PortObserver() = default;
+  virtual void passed(Initiator initiator, bool to_ddr, Cycles start, Cycles finish) = 0;
+};
+
+/// Told of transfers between host and mono memory.
+class HostObserver {
+ public:
+  virtual ~HostObserver() = default;
+  virtual void began_transfer(bool upload, std::uint64_t bytes, Cycles start) = 0;
+  virtual void ended_transfer(bool upload, std::uint64_t bytes, Cycles start, Cycles finish) = 0;
+};
+
+}  // namespace model

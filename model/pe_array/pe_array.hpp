@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "firmware/cn/chip/instruction.hpp"
+#include "model/config/chip_config.hpp"
+#include "model/time/cycles.hpp"
+
+namespace model {
+
+/// Cycles in which the control unit did nothing but wait for programmed I/O.
+struct PioWaits {
+  Cycles load = 0;   ///< on a semaphore of a mono-to-poly transfer
+  Cycles save = 0;   ///< on a semaphore of a poly-to-mono transfer
+  Cycles queue = 0;  ///< to queue a request
+
+  Cycles total() const { return load + save + queue; }
+  PioWaits& operator+=(const PioWaits& other) {
+    load += other.load, save += other.save, queue += other.queue;
+    return *this;
+  }
+  PioWaits operator-(const PioWaits& other) const {
+    return {load - other.load, save - other.save, queue - other.queue};
+  }
+};
+
+struct KernelStatistics {
+  std::string name;
+  std::uint64_t runs = 0;
+  Cycles cycles = 0;
+  cn::IssueCounts issued;
+  cn::IssueCounts executed;  ///< issued, each weighted by the PEs enabled
+  PioWaits waited_before;    ///< between the kernel before this one, whichever it was, and this one
+  /// [e]: runs that began with e PEs enabled, empty in total().
+  std::vector<std::uint64_t> runs_by_enabled_pes;
+  double issue_cycles = 0;         ///< before the code quality factor
+  double enabled_lane_cycles = 0;  ///< the same, each weighted by the PEs enabled
+
+  /// Share of the issued lane-cycles in which a PE was enabled. Counts PEs as the kernel, its loops and its
+  /// any-branches were entered; the branches of a plain poly if are not told apart.
+  double simd_efficiency(int num_pes) const {
+    return issue_cycles > 0 ? enabled_lane_cycles / (issue_cycles * num_pes) : 1.0;
+  }
+};
+
+/// The PEs as a cost: they run in lock step, so a kernel takes what its instructions take, whatever the data.
+/// The lanes' values are computed by the firmware's own code (firmware/cn).
+class PeArray : public sc_core::sc_module {
+ public:
+  PeArray(const sc_core::sc_module_name& name, const ChipConfig& config);
+
+  struct Cost {
+    Cycles cycles = 0;       ///< the kernel alone
+    Cycles sram_cycles = 0;  ///< of these, with an access to SRAM
+  };
+
+  /// Books a kernel and returns what it takes. Mono instructions go on beside poly ones through the issue
+  /// queue; the longer stream counts. So do vector loads beside vector arithmetic, if the chip overlaps them.
+  /// @param waited_before of the control unit since the kernel before
+  Cost retire(const char* name, const cn::IssueTree& issued, const PioWaits& waited_before = {});
+
+  /// In the order in which they first ran.
+  std::vector<KernelStatistics> kernels() const;
+  KernelStatistics total() const;
+  int num_pes() const { return num_pes_; }
+
+ private:
+  /// Instructions that a kernel issues one after the other, whatever the data: its cost is computed once.
+  struct Block {
+    cn::IssueCounts counts;
+    double cycles = 0;
+    std::uint64_t times = 0;
+    std::uint64_t enabled_lanes = 0;  ///< summed over the times
+  };
+  struct Kernel {
+    const char* name;             ///< a string literal: compared by address
+    KernelStatistics statistics;  ///< without the sums over blocks
+    std::vector<Block> blocks;
+    /// Of the blocks, as the last run issued them: the next is likely to do the same.
+    std::vector<std::size_t> order;
+  };
+
+  Kernel& kernel(const char* name);
+  Block& block(Kernel& kernel, std::size_t place, const cn::IssueCounts& counts);
+  double poly_cycles(const cn::IssueCounts& counts) const;
+
+  int num_pes_;
+  double code_quality_factor_;
+  bool vector_loads_overlap_;
+  std::array<double, cn::kInstructionClasses> cycles_;
+  std::vector<Kernel> kernels_;
+};
+
+}  // namespace model

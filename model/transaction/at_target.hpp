@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "model/time/agenda.hpp"
+
+namespace model {
+
+/// The target's side of the base protocol on one socket (IEEE 1666-2011, 15.2): holds a reference to each
+/// payload from its request to the end of its response, ends requests when its owner can take another, and
+/// sends responses one after the other, each when the initiator has ended the one before.
+class AtTarget {
+ public:
+  struct Owner {
+    /// A request that has begun in this cycle. Returns when it ends (END_REQ): the initiator cannot begin
+    /// another before. Nothing: when the owner calls accept().
+    std::function<std::optional<Cycles>(tlm::tlm_generic_payload&)> requested;
+    /// The socket's way back to the initiator.
+    std::function<tlm::tlm_sync_enum(tlm::tlm_generic_payload&, tlm::tlm_phase&, sc_core::sc_time&)> backward;
+  };
+
+  AtTarget(Agenda& agenda, Owner owner) : agenda_(agenda), owner_(std::move(owner)) {}
+  AtTarget(const AtTarget&) = delete;
+  AtTarget& operator=(const AtTarget&) = delete;
+
+  /// Ends the request, which was not ended when it began.
+  void accept(tlm::tlm_generic_payload& payload);
+  /// Begins the response, or does so when the one before is over. From the agenda, not from within a call of
+  /// the initiator.
+  void respond(tlm::tlm_generic_payload& payload);
+
+  /// What the module's socket passes on.
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay);
+
+ private:
+  void take_delayed_request(tlm::tlm_generic_payload& payload);
+  void begin_response();
+  void end_response();
+
+  Agenda& agenda_;
+  Owner owner_;
+  std::vector<tlm::tlm_generic_payload*> responses_;  ///< that wait; the first may be on its way
+  bool responding_ = false;
+};
+
+}  // namespace model

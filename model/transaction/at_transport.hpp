@@ -1,0 +1,52 @@
+#pragma once
+
+#include <systemc>
+#include <tlm>
+
+#include "model/time/agenda.hpp"
+#include "model/transaction/at_initiator.hpp"
+
+namespace model {
+
+/// b_transport for the process that runs firmware, in four phases: one transaction at a time, and the process
+/// waits until it is over.
+class AtTransport {
+ public:
+  AtTransport(Agenda& agenda, tlm::tlm_initiator_socket<>& socket)
+      : agenda_(agenda),
+        initiator_(agenda, socket,
+                   {[](auto&) {},
+                    [this](auto&) {
+                      over_.notify(sc_core::SC_ZERO_TIME);
+                      return agenda_.now();
+                    }}) {}
+
+  /// Of a payload that is used here only. Returns when it is over.
+  Cycles transport(tlm::tlm_generic_payload& payload) {
+    payload.set_mm(&keeper_);
+    payload.acquire();
+    initiator_.send(payload);
+    agenda_.pass_time_until(over_);
+    payload.release();
+    return agenda_.now();
+  }
+
+  /// What the module's socket passes on.
+  tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) {
+    return initiator_.nb_transport_bw(payload, phase, delay);
+  }
+
+ private:
+  /// The payload stays where it is.
+  struct Keeper : tlm::tlm_mm_interface {
+    void free(tlm::tlm_generic_payload*) override {}
+  };
+
+  Agenda& agenda_;
+  AtInitiator initiator_;
+  Keeper keeper_;
+  sc_core::sc_event over_;
+};
+
+}  // namespace model

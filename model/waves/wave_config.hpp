@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "model/time/cycles.hpp"
+#include "model/waves/wave_selection.hpp"
+
+namespace model {
+
+/// Cycles [first, last).
+struct CycleWindow {
+  Cycles first = 0;
+  Cycles last = std::numeric_limits<Cycles>::max();
+};
+
+/// The blocks whose kernels are the first-th, counted from 1, and the `count` - 1 after it; up to where the
+/// kernels of the next one begin.
+struct BlockWindow {
+  std::uint64_t first = 1;
+  std::uint64_t count = std::numeric_limits<std::uint64_t>::max();
+};
+
+struct WaveConfig {
+  WaveSelection selection;
+  /// What is recorded; nothing named: the whole run.
+  std::vector<CycleWindow> windows;
+  std::vector<BlockWindow> blocks;
+};
+
+/// Throws WaveError if the selection or a window is empty.
+void check_waves(const WaveConfig& config, const ChipConfig& chip);
+
+}  // namespace model

@@ -1,0 +1,64 @@
+#include "testbench/film/chart.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+/// As gnuplot reads it: nothing is special between single quotes but the quote.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "'";
+}
+
+std::string gnuplot_script(const LogChart& chart, const std::string& terminal, const std::string& output) {
+  std::ostringstream script;
+  script.precision(17);
+  script << "set terminal " << terminal << "\nset output " << quoted(output) << "\nset title "
+         << quoted(chart.title) << " noenhanced\nset xlabel " << quoted(chart.x_label)
+         << " noenhanced\nset ylabel " << quoted(chart.y_label)
+         << " noenhanced\nset logscale xy\nset grid\nset key top right noenhanced\n";
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    const ChartSeries& series = chart.series[i];
+    script << "$series" << i << " << EOD\n";
+    for (std::size_t k = 0; k < series.x.size(); ++k)
+      if (series.x[k] > 0 && series.y[k] > 0) script << series.x[k] << " " << series.y[k] << "\n";
+    script << "EOD\n";
+  }
+  for (std::size_t i = 0; i < chart.series.size(); ++i)
+    script << (i == 0 ? "plot " : ", ") << "$series" << i << " with linespoints linewidth 2 title "
+           << quoted(chart.series[i].label);
+  script << "\n";
+  return script.str();
+}
+
+}  // namespace
+
+bool can_draw_charts() {
+  const char* const path = std::getenv("PATH");
+  std::istringstream directories(path ? path : "");
+  for (std::string directory; std::getline(directories, directory, ':');)
+    if (access((directory + "/gnuplot").c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+void write_chart(const std::filesystem::path& path, const LogChart& chart) {
+  const std::string terminal =
+      path.extension() == ".svg" ? "svg size 960,640 background 'white'" : "pngcairo size 960,640";
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::FILE* const gnuplot = popen("gnuplot", "w");
+    if (gnuplot == nullptr) throw RunError(path.string() + ": cannot start gnuplot");
+    std::fputs(gnuplot_script(chart, terminal, temporary.string()).c_str(), gnuplot);
+    if (pclose(gnuplot) != 0) throw RunError(path.string() + ": gnuplot failed");
+  });
+}
+
+}  // namespace testbench

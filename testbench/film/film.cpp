@@ -1,0 +1,203 @@
+#include "testbench/film/film.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
+
+#include "model/memory/huge_pages.hpp"
+#include "testbench/system/digest.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+constexpr int kMaxScaleExponent = 40;
+constexpr int kLargestSampleExponent = 20;  ///< a sample may be 2^this times the scale
+// 32 bits of samples + 20 (40 for squares) bits of range + 74 (54) bits of fraction = 126 bits.
+constexpr int kSumFractionBits = 74;
+constexpr int kSquareFractionBits = 54;
+
+// Not in ISO C++17: the 113-bit mantissa keeps a small variance under a large mean from cancelling away.
+__extension__ typedef __float128 Float128;  // NOLINT(modernize-use-using)
+
+/// The exponent e of scale = 2^e, or std::invalid_argument.
+int exponent_of(double scale) {
+  int exponent = 0;
+  const double mantissa = std::frexp(scale, &exponent);
+  if (mantissa != 0.5 || std::abs(exponent - 1) > kMaxScaleExponent) {
+    throw std::invalid_argument("film scale " + std::to_string(scale) +
+                                " is not a power of two from 2^-40 to 2^40");
+  }
+  return exponent - 1;
+}
+
+std::size_t checked_pixels(FilmSize size) {
+  if (size.width < 1 || size.height < 1) throw std::invalid_argument("film size must be 1x1 or more");
+  return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+}
+
+double from_float128(Float128 value, int exponent) {
+  return std::ldexp(static_cast<double>(value), exponent);
+}
+
+}  // namespace
+
+Film::Film(FilmSize size, double scale)
+    : size_(size),
+      scale_(scale),
+      max_radiance_(std::ldexp(scale, kLargestSampleExponent)),
+      sum_quantum_exponent_(exponent_of(scale) - kSumFractionBits),
+      square_quantum_exponent_(2 * exponent_of(scale) - kSquareFractionBits),
+      sum_units_(std::ldexp(1.0, -sum_quantum_exponent_ - 63)),
+      square_units_(std::ldexp(1.0, -square_quantum_exponent_ - 63)) {
+  pixels_.reserve(checked_pixels(size));
+  model::prefer_huge_pages(pixels_.data(), pixels_.capacity() * sizeof(Pixel));
+  pixels_.resize(checked_pixels(size));
+}
+
+/// floor(value * units * 2^63), exact: `units` is a power of two and value * units is below 2^31.
+Film::UInt128 Film::to_fixed_point(double value, double units) {
+  const double scaled = value * units;
+  const auto high = static_cast<std::int64_t>(scaled);
+  const auto low = static_cast<std::int64_t>((scaled - static_cast<double>(high)) * 0x1p63);
+  // By way of 64 unsigned bits: neither half is negative, and this spares the sign extension.
+  return (UInt128{static_cast<std::uint64_t>(high)} << 63) + static_cast<std::uint64_t>(low);
+}
+
+bool Film::add(int pixel_index, const glm::dvec3& radiance) {
+  Pixel& pixel = pixels_.at(static_cast<std::size_t>(pixel_index));
+  const auto fits = [this](double value) { return value >= 0.0 && value <= max_radiance_; };  // false for NaN
+  if (!(fits(radiance.x) && fits(radiance.y) && fits(radiance.z)) || pixel.samples == kMaxSamples) {
+    reject(radiance);
+    return false;
+  }
+  for (int channel = 0; channel < 3; ++channel) {
+    const double value = radiance[channel];
+    pixel.sum[channel] += to_fixed_point(value, sum_units_);
+    pixel.sum_of_squares[channel] += to_fixed_point(value * value, square_units_);
+  }
+  ++pixel.samples;
+  return true;
+}
+
+void Film::reject(const glm::dvec3& radiance) {
+  const auto any = [&radiance](auto is_bad) {
+    return is_bad(radiance.x) || is_bad(radiance.y) || is_bad(radiance.z);
+  };
+  if (any([](double value) { return !std::isfinite(value); })) {
+    ++rejected_.not_finite;
+  } else if (any([](double value) { return value < 0.0; })) {
+    ++rejected_.negative;
+  } else {
+    ++rejected_.too_large;
+  }
+}
+
+void Film::merge(const Film& other) {
+  if (other.size_.width != size_.width || other.size_.height != size_.height || other.scale_ != scale_) {
+    throw std::invalid_argument("only films of the same size and scale can be merged");
+  }
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if (pixels_[i].samples + other.pixels_[i].samples > kMaxSamples) {
+      throw std::overflow_error("pixel " + std::to_string(i) + " would hold more than 2^32 samples");
+    }
+  }
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel) {
+      pixels_[i].sum[channel] += other.pixels_[i].sum[channel];
+      pixels_[i].sum_of_squares[channel] += other.pixels_[i].sum_of_squares[channel];
+    }
+    pixels_[i].samples += other.pixels_[i].samples;
+  }
+  rejected_.not_finite += other.rejected_.not_finite;
+  rejected_.negative += other.rejected_.negative;
+  rejected_.too_large += other.rejected_.too_large;
+}
+
+std::string Film::bytes() const {
+  static_assert(std::is_trivially_copyable_v<Pixel> && std::is_trivially_copyable_v<RejectedSamples>);
+  const std::size_t pixel_bytes = pixels_.size() * sizeof(Pixel);
+  std::string result(pixel_bytes + sizeof(rejected_), '\0');
+  std::memcpy(result.data(), pixels_.data(), pixel_bytes);
+  std::memcpy(result.data() + pixel_bytes, &rejected_, sizeof(rejected_));
+  return result;
+}
+
+Film Film::from_bytes(FilmSize size, double scale, const std::string& bytes) {
+  Film film(size, scale);
+  const std::size_t pixel_bytes = film.pixels_.size() * sizeof(Pixel);
+  if (bytes.size() != pixel_bytes + sizeof(film.rejected_))
+    throw std::invalid_argument("these bytes are not a film of that size");
+  std::memcpy(film.pixels_.data(), bytes.data(), pixel_bytes);
+  std::memcpy(&film.rejected_, bytes.data() + pixel_bytes, sizeof(film.rejected_));
+  return film;
+}
+
+glm::dvec3 Film::mean(int pixel_index) const {
+  const Pixel& pixel = at(pixel_index);
+  if (pixel.samples == 0) return glm::dvec3(0.0);
+  glm::dvec3 result;
+  for (int channel = 0; channel < 3; ++channel) {
+    const Float128 quotient =
+        static_cast<Float128>(pixel.sum[channel]) / static_cast<Float128>(pixel.samples);
+    result[channel] = from_float128(quotient, sum_quantum_exponent_);
+  }
+  return result;
+}
+
+glm::dvec3 Film::variance_of_mean(int pixel_index) const {
+  const Pixel& pixel = at(pixel_index);
+  if (pixel.samples < 2) return glm::dvec3(0.0);
+  const auto samples = static_cast<Float128>(pixel.samples);
+  // Brings the squared sum to the quantum of the sum of squares.
+  const int shift = 2 * sum_quantum_exponent_ - square_quantum_exponent_;
+  const auto sum_to_square_quanta = static_cast<Float128>(std::ldexp(1.0, shift));
+  glm::dvec3 result;
+  for (int channel = 0; channel < 3; ++channel) {
+    const auto sum = static_cast<Float128>(pixel.sum[channel]);
+    const auto squares = static_cast<Float128>(pixel.sum_of_squares[channel]);
+    const Float128 deviation = squares - sum * sum * sum_to_square_quanta / samples;
+    const Float128 variance = deviation / (samples - 1) / samples;
+    result[channel] =
+        std::max(0.0, from_float128(variance, square_quantum_exponent_));  // bits cut off: maybe below 0
+  }
+  return result;
+}
+
+std::uint64_t Film::rejected_samples() const {
+  return rejected_.not_finite + rejected_.negative + rejected_.too_large;
+}
+
+std::vector<double> Film::rgb() const {
+  std::vector<double> result;
+  result.reserve(3 * pixels_.size());
+  for (int pixel = 0; pixel < pixel_count(); ++pixel) {
+    const glm::dvec3 value = mean(pixel);
+    result.insert(result.end(), {value.x, value.y, value.z});
+  }
+  return result;
+}
+
+std::string Film::sha256() const {
+  std::string bytes;
+  for (const double value : rgb()) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<char>(bits >> shift));
+  }
+  return testbench::sha256({bytes.data(), bytes.size()});
+}
+
+double film_scale(const Scene& scene) {
+  double largest = 0.0;
+  for (const Material& material : scene.materials) {
+    for (int channel = 0; channel < 3; ++channel) largest = std::max(largest, material.emission[channel]);
+  }
+  double scale = std::ldexp(1.0, -kMaxScaleExponent);
+  while (scale < largest && scale < std::ldexp(1.0, kMaxScaleExponent)) scale *= 2.0;
+  return scale;
+}
+
+}  // namespace testbench

@@ -1,0 +1,201 @@
+#include "testbench/film/image_file.hpp"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+constexpr const char* kMeanChannels[3] = {"R", "G", "B"};
+constexpr const char* kVarianceChannels[3] = {"variance.R", "variance.G", "variance.B"};
+constexpr const char* kSamplesChannel = "samples";
+
+/// What the EXR channels hold, interleaved as the frame buffer wants it.
+struct ExrPixel {
+  float mean[3];
+  float variance[3];
+  std::uint32_t samples;
+};
+
+std::vector<ExrPixel> exr_pixels(const Film& film) {
+  std::vector<ExrPixel> pixels;
+  pixels.reserve(static_cast<std::size_t>(film.pixel_count()));
+  for (int index = 0; index < film.pixel_count(); ++index) {
+    const glm::dvec3 mean = film.mean(index);
+    const glm::dvec3 variance = film.variance_of_mean(index);
+    ExrPixel& pixel = pixels.emplace_back();
+    for (int channel = 0; channel < 3; ++channel) {
+      pixel.mean[channel] = static_cast<float>(mean[channel]);
+      pixel.variance[channel] = static_cast<float>(variance[channel]);
+    }
+    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    pixel.samples = static_cast<std::uint32_t>(std::min(film.sample_count(index), most));
+  }
+  return pixels;
+}
+
+Imf::Header exr_header(const Film& film, const std::map<std::string, std::string>& attributes) {
+  Imf::Header header(film.size().width, film.size().height);
+  for (const auto& [name, value] : attributes) {
+    if (name.empty() || header.find(name) != header.end()) {
+      throw std::invalid_argument("EXR attribute name '" + name + "' is empty or used by OpenEXR itself");
+    }
+    header.insert(name, Imf::StringAttribute(value));
+  }
+  for (int channel = 0; channel < 3; ++channel) {
+    header.channels().insert(kMeanChannels[channel], Imf::Channel(Imf::FLOAT));
+    header.channels().insert(kVarianceChannels[channel], Imf::Channel(Imf::FLOAT));
+  }
+  header.channels().insert(kSamplesChannel, Imf::Channel(Imf::UINT));
+  return header;
+}
+
+/// OpenEXR addresses a slice by the pixel (0, 0) and byte strides.
+template <class Element>
+Imf::Slice slice(Imf::PixelType type, Element* first, std::size_t pixel_bytes, int width) {
+  return Imf::Slice(type, reinterpret_cast<char*>(first), pixel_bytes,
+                    pixel_bytes * static_cast<std::size_t>(width));
+}
+
+std::string encode_exr(const Film& film, const Imf::Header& header) {
+  std::vector<ExrPixel> pixels = exr_pixels(film);
+  const int width = film.size().width;
+  Imf::FrameBuffer buffer;
+  for (int channel = 0; channel < 3; ++channel) {
+    buffer.insert(kMeanChannels[channel],
+                  slice(Imf::FLOAT, &pixels[0].mean[channel], sizeof(ExrPixel), width));
+    buffer.insert(kVarianceChannels[channel],
+                  slice(Imf::FLOAT, &pixels[0].variance[channel], sizeof(ExrPixel), width));
+  }
+  buffer.insert(kSamplesChannel, slice(Imf::UINT, &pixels[0].samples, sizeof(ExrPixel), width));
+
+  Imf::StdOSStream stream;
+  {
+    // Its destructor writes the line table, and hides errors: hence memory, and a checked write of the whole
+    // afterwards.
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(film.size().height);
+  }
+  return stream.str();
+}
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& path, const Film& film,
+               const std::map<std::string, std::string>& attributes) {
+  write_bytes_atomically(path, encode_exr(film, exr_header(film, attributes)));
+}
+
+int srgb_code(double linear) {
+  const double clamped = std::clamp(linear, 0.0, 1.0);
+  const double encoded =
+      clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;
+  return static_cast<int>(std::lround(255.0 * encoded));
+}
+
+void write_png(const std::filesystem::path& path, const Film& film) {
+  std::vector<unsigned char> codes;
+  for (const double value : film.rgb()) codes.push_back(static_cast<unsigned char>(srgb_code(value)));
+
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(film.size().width);
+  image.height = static_cast<png_uint_32>(film.size().height);
+  image.format = PNG_FORMAT_RGB;
+  const auto encode = [&](void* memory, png_alloc_size_t& bytes) {
+    if (png_image_write_to_memory(&image, memory, &bytes, 0, codes.data(), 0, nullptr) == 0) {
+      throw RunError(path.string() + ": libpng could not encode it: " + image.message);
+    }
+  };
+  png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string file(bytes, '\0');
+  encode(file.data(), bytes);
+  write_bytes_atomically(path, std::string_view(file).substr(0, bytes));
+}
+
+namespace {
+
+/// Three float channels of an open file, interleaved.
+std::vector<float> read_channels(Imf::InputFile& file, const char* const (&names)[3],
+                                 const std::filesystem::path& path) {
+  const Imath::Box2i window = file.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  const auto height = static_cast<std::size_t>(window.max.y - window.min.y + 1);
+  std::vector<float> values(3 * width * height);
+  Imf::FrameBuffer buffer;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    if (file.header().channels().findChannel(names[channel]) == nullptr)
+      throw InputError(path.string() + ": found no channel " + names[channel] +
+                       "; allowed: an OpenEXR file with channels " + names[0] + ", " + names[1] + " and " +
+                       names[2]);
+    buffer.insert(names[channel], Imf::Slice::Make(Imf::FLOAT, &values[channel], window, 3 * sizeof(float),
+                                                   3 * sizeof(float) * width));
+  }
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.min.y, window.max.y);
+  return values;
+}
+
+/// Calls `read` with the open file and names the file in whatever goes wrong.
+template <class Read>
+auto read_exr(const std::filesystem::path& path, Read&& read) {
+  try {
+    Imf::InputFile file(path.c_str());
+    return read(file);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    const std::string what = error.what();
+    throw InputError(path.string() + ": cannot be read (" + what.substr(0, what.find('\n')) +
+                     "); allowed: an OpenEXR file with channels R, G and B");
+  }
+}
+
+template <class Image>
+void read_size(const Imf::InputFile& file, Image& image) {
+  const Imath::Box2i window = file.header().dataWindow();
+  image.width = window.max.x - window.min.x + 1;
+  image.height = window.max.y - window.min.y + 1;
+}
+
+}  // namespace
+
+ExrImage read_exr_rgb(const std::filesystem::path& path) {
+  return read_exr(path, [&](Imf::InputFile& file) {
+    ExrImage image;
+    read_size(file, image);
+    image.rgb = read_channels(file, kMeanChannels, path);
+    return image;
+  });
+}
+
+ExrFilm read_exr_film(const std::filesystem::path& path) {
+  return read_exr(path, [&](Imf::InputFile& file) {
+    ExrFilm film;
+    read_size(file, film);
+    film.rgb = read_channels(file, kMeanChannels, path);
+    film.variance = read_channels(file, kVarianceChannels, path);
+    for (auto entry = file.header().begin(); entry != file.header().end(); ++entry)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute()))
+        film.attributes[entry.name()] = text->value();
+    return film;
+  });
+}
+
+}  // namespace testbench

@@ -1,0 +1,97 @@
+#include "testbench/film/light_pixels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "testbench/mono_image/faces.hpp"
+#include "testbench/mono_image/mono_image.hpp"
+
+namespace testbench {
+namespace {
+
+/// Film coordinates in pixels.
+using FilmPolygon = std::vector<glm::dvec2>;
+
+/// Camera coordinates: right, down, depth along the viewing direction.
+glm::dvec3 to_camera(const Camera& camera, const glm::dvec3& point) {
+  const glm::dvec3 from = point - camera.position;
+  return {glm::dot(from, glm::cross(camera.direction, camera.up)), -glm::dot(from, camera.up),
+          glm::dot(from, camera.direction)};
+}
+
+/// The part of a triangle in front of the camera, projected (clipped after Sutherland and Hodgman 1974).
+FilmPolygon project(const Triangle& triangle, const Camera& camera, const FilmSize& film) {
+  glm::dvec3 corner[3];
+  double farthest = 0;
+  for (int i = 0; i < 3; ++i) {
+    corner[i] = to_camera(camera, triangle.vertex[i]);
+    farthest = std::max(farthest, corner[i].z);
+  }
+  const double near = farthest * 1e-6;
+  if (!(near > 0)) return {};
+  const double pixels_per_unit = film.height / (2 * std::tan(0.5 * camera.vertical_field_of_view_radians));
+  FilmPolygon polygon;
+  const auto add = [&](const glm::dvec3& p) {
+    polygon.emplace_back(0.5 * film.width + p.x / p.z * pixels_per_unit,
+                         0.5 * film.height + p.y / p.z * pixels_per_unit);
+  };
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3& a = corner[i];
+    const glm::dvec3& b = corner[(i + 1) % 3];
+    if (a.z >= near) add(a);
+    if ((a.z >= near) != (b.z >= near)) add(a + (b - a) * ((near - a.z) / (b.z - a.z)));
+  }
+  return polygon;
+}
+
+/// Separating axes of a convex polygon and the unit square at (x, y); touching is not overlapping.
+bool overlaps(const FilmPolygon& polygon, double x, double y) {
+  const auto separated_along = [&](const glm::dvec2& axis) {
+    double polygon_low = glm::dot(polygon[0], axis), polygon_high = polygon_low;
+    for (const glm::dvec2& p : polygon) {
+      polygon_low = std::min(polygon_low, glm::dot(p, axis));
+      polygon_high = std::max(polygon_high, glm::dot(p, axis));
+    }
+    const double square_low = x * axis.x + y * axis.y + std::min(0.0, axis.x) + std::min(0.0, axis.y);
+    const double square_high = x * axis.x + y * axis.y + std::max(0.0, axis.x) + std::max(0.0, axis.y);
+    return polygon_high <= square_low || square_high <= polygon_low;
+  };
+  if (separated_along({1, 0}) || separated_along({0, 1})) return false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    if (separated_along({-edge.y, edge.x})) return false;
+  }
+  return true;
+}
+
+void mark(const FilmPolygon& polygon, const FilmSize& film, std::vector<bool>& marked) {
+  if (polygon.size() < 3) return;
+  const auto range = [&](auto coordinate, int limit) {
+    const auto [low, high] = std::minmax_element(
+        polygon.begin(), polygon.end(),
+        [&](const glm::dvec2& a, const glm::dvec2& b) { return coordinate(a) < coordinate(b); });
+    return std::pair<int, int>(int(std::clamp(std::floor(coordinate(*low)), 0.0, double(limit))),
+                               int(std::clamp(std::ceil(coordinate(*high)), 0.0, double(limit))));
+  };
+  const auto [left, right] = range([](const glm::dvec2& p) { return p.x; }, film.width);
+  const auto [top, bottom] = range([](const glm::dvec2& p) { return p.y; }, film.height);
+  for (int row = top; row < bottom; ++row)
+    for (int column = left; column < right; ++column)
+      if (overlaps(polygon, column, row))
+        marked[std::size_t(row) * std::size_t(film.width) + std::size_t(column)] = true;
+}
+
+}  // namespace
+
+std::vector<bool> light_pixels(const Scene& scene) {
+  std::vector<bool> marked(std::size_t(scene.film.width) * std::size_t(scene.film.height));
+  for (const Triangle& triangle : scene.triangles) {
+    const Material& material = scene.materials[std::size_t(triangle.material)];
+    if (material.emission == glm::dvec3(0.0)) continue;
+    if (glm::dot(area_normal(triangle), scene.camera.position - triangle.vertex[0]) <= 0) continue;
+    mark(project(triangle, scene.camera, scene.film), scene.film, marked);
+  }
+  return marked;
+}
+
+}  // namespace testbench

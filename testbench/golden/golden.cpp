@@ -1,0 +1,202 @@
+#include "testbench/golden/golden.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "testbench/scene/scene_file.hpp"
+#include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/render_report.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/processes.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+bool is_kept(const std::string& key) {
+  if (key == "image_sha256") return true;
+  const Counter* const counter = find_counter(key);
+  return counter != nullptr && counter->kind == CounterKind::counted && group_of(key) != "host";
+}
+
+FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
+  RenderOptions options = run.options;
+  fit_tree(scene.triangles.size(), options.chip, run.tree, options.program);
+  const RenderResult result = render_on_chip(scene, options);
+  FlatStatistics kept;
+  for (auto& value : flatten(render_statistics({run.scene, options, false}, result)))
+    if (is_kept(value.first)) kept.push_back(std::move(value));
+  return kept;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  if (!line.empty() && line.back() == ',') cells.emplace_back();
+  return cells;
+}
+
+GoldenTable read_table(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line) || line.rfind("key,", 0) != 0)
+    throw InputError(path.string() +
+                     ": not a table of golden runs; write it anew with csx600 golden --update");
+  GoldenTable table;
+  const std::vector<std::string> names = cells_of(line);
+  for (std::size_t i = 1; i < names.size(); ++i) table.push_back({names[i], {}});
+  for (int number = 2; std::getline(file, line); ++number) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() != names.size())
+      throw InputError(path.string() + ":" + std::to_string(number) + ": found " +
+                       std::to_string(cells.size()) + " cells, allowed are " + std::to_string(names.size()));
+    for (std::size_t i = 1; i < cells.size(); ++i) {
+      if (cells[i].empty()) continue;
+      const Json value = Json::parse(cells[i], nullptr, false);
+      table[i - 1].second.emplace_back(cells[0], value.is_discarded() ? Json(cells[i]) : value);
+    }
+  }
+  return table;
+}
+
+/// Keys of all runs: those that only some have follow the key that they follow there.
+std::vector<std::string> keys_of(const GoldenTable& table) {
+  std::vector<std::string> keys;
+  std::set<std::string> known;
+  for (const auto& [name, values] : table) {
+    std::size_t place = 0;
+    for (const auto& [key, value] : values) {
+      if (known.insert(key).second) {
+        keys.insert(keys.begin() + std::ptrdiff_t(place++), key);
+      } else {
+        place = std::size_t(std::find(keys.begin(), keys.end(), key) - keys.begin()) + 1;
+      }
+    }
+  }
+  return keys;
+}
+
+std::string table_csv(const GoldenTable& table) {
+  std::string csv = "key";
+  std::vector<std::map<std::string, Json>> columns;
+  for (const auto& [name, values] : table) {
+    csv += ',' + name;
+    columns.emplace_back(values.begin(), values.end());
+  }
+  csv += '\n';
+  for (const std::string& key : keys_of(table)) {
+    csv += key;
+    for (const auto& column : columns) {
+      const auto found = column.find(key);
+      csv += ',' + (found == column.end() ? "" : value_of(found->second));
+    }
+    csv += '\n';
+  }
+  return csv;
+}
+
+/// How one counter moved over the runs.
+struct Move {
+  int runs = 0;
+  std::optional<double> least;     ///< relative difference; nothing where a value is missing or no number
+  std::optional<double> greatest;  ///< likewise
+  Difference first;
+  std::string first_run;
+
+  void add(const Difference& difference, const std::string& run) {
+    if (runs++ == 0) first = difference, first_run = run;
+    if (const std::optional<double> relative = difference.relative()) {
+      least = std::min(least.value_or(*relative), *relative);
+      greatest = std::max(greatest.value_or(*relative), *relative);
+    }
+  }
+};
+
+std::string text_of(const std::optional<Json>& value) {
+  return value ? value_of(*value).substr(0, 20) : "missing";
+}
+
+std::string move_line(const std::string& key, const Move& move, std::size_t runs) {
+  char range[64] = "";
+  if (move.least)
+    std::snprintf(range, sizeof(range), "  %+.4g to %+.4g %%", 100 * *move.least, 100 * *move.greatest);
+  return "  " + key + ": in " + std::to_string(move.runs) + " of " + std::to_string(runs) + " runs" + range +
+         "; " + move.first_run + ": " + text_of(move.first.a) + " -> " + text_of(move.first.b) + '\n';
+}
+
+/// Runs of all files by "cornell_box-paper full n1 both lt".
+std::vector<std::pair<std::string, const FlatStatistics*>> runs_of(const GoldenTables& tables) {
+  std::vector<std::pair<std::string, const FlatStatistics*>> runs;
+  for (const auto& [file, table] : tables)
+    for (const auto& [name, values] : table)
+      runs.emplace_back(fs::path(file).stem().string() + ' ' + name, &values);
+  return runs;
+}
+
+}  // namespace
+
+GoldenTables run_golden(const GoldenGrid& grid, int jobs, const std::function<void(double)>& progress) {
+  std::map<std::string, Scene> scenes;
+  for (const GoldenRun& run : grid.runs)
+    if (scenes.count(run.scene) == 0) {
+      Scene scene = load_scene(run.scene);
+      scene.film = grid.film;
+      scenes.emplace(run.scene, std::move(scene));
+    }
+  std::vector<std::function<std::string()>> work;
+  for (const GoldenRun& run : grid.runs)
+    work.emplace_back([&] { return Json(kept_of(run, scenes.at(run.scene))).dump(); });
+  const std::vector<std::string> results = run_in_processes(work, jobs, [&](int finished) {
+    if (progress) progress(finished / double(work.size()));
+  });
+  GoldenTables tables;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    tables[grid.runs[i].file].emplace_back(grid.runs[i].name, Json::parse(results[i]).get<FlatStatistics>());
+  return tables;
+}
+
+GoldenTables read_golden(const fs::path& directory) {
+  GoldenTables tables;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
+    if (entry.path().extension() == ".csv") tables[entry.path().filename()] = read_table(entry.path());
+  return tables;
+}
+
+void write_golden(const fs::path& directory, const GoldenTables& tables) {
+  for (const auto& [file, table] : tables) write_bytes_atomically(directory / file, table_csv(table));
+  for (const auto& [file, table] : read_golden(directory))
+    if (tables.count(file) == 0) fs::remove(directory / file);
+}
+
+std::string golden_moves(const GoldenTables& kept, const GoldenTables& found) {
+  const auto after = runs_of(found);
+  std::map<std::string, const FlatStatistics*> before;
+  for (const auto& [run, values] : runs_of(kept)) before[run] = values;
+  std::string text;
+  std::vector<std::string> order;
+  std::map<std::string, Move> moves;
+  for (const auto& [run, values] : after) {
+    const auto old = before.find(run);
+    if (old == before.end()) {
+      text += "  new run: " + run + '\n';
+      continue;
+    }
+    for (const Difference& difference : compare(*old->second, *values, {}).differences) {
+      if (moves.count(difference.key) == 0) order.push_back(difference.key);
+      moves[difference.key].add(difference, run);
+    }
+    before.erase(old);
+  }
+  for (const auto& [run, values] : before) text += "  run gone: " + run + '\n';
+  for (const std::string& key : order) text += move_line(key, moves[key], after.size());
+  return text;
+}
+
+}  // namespace testbench

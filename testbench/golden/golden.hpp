@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "testbench/run/render.hpp"
+#include "testbench/run/traversal_choice.hpp"
+#include "testbench/statistics/statistics_difference.hpp"
+
+namespace testbench {
+
+/// Whole-chip runs whose counters are kept in files, so that a change of any of them shows.
+struct GoldenRun {
+  std::string file;   ///< of the runs of one scene and chip: "cornell_box-csx600.csv"
+  std::string name;   ///< its column: "full n1 both lt"
+  std::string scene;  ///< path of its directory
+  RenderOptions options;
+  TreeWishes tree;  ///< the rest is chosen as `csx600 render` does
+};
+
+/// The runs that DIRECTORY/grid.toml asks for:
+///
+///     width = 12               of the films
+///     height = 8
+///     samples = 2              a pixel
+///     [[grid]]                 all combinations of
+///     scenes = ["../../scenes/cornell_box"]    relative to grid.toml
+///     chips = ["csx600"]                       presets
+///     programs = ["segments", "direct", "full"]
+///     n = [0, 1]
+///     buffers = ["both"]                       loads, saves, both or none
+///     timings = ["lt"]                         lt or at
+///     traversals = ["refill"]                  may be left out: brute_force
+///     node_formats = ["fp32"]                  may be left out, of trees only
+///     node_widths = [4]                        likewise
+///
+/// `program` gives all that the grid does not. Throws InputError.
+struct GoldenGrid {
+  FilmSize film;
+  std::vector<GoldenRun> runs;
+};
+GoldenGrid read_golden_grid(const std::filesystem::path& directory,
+                            const path_tracer::ProgramConfig& program);
+
+/// What is kept of each run, by file and name: the counters (CounterKind::counted), without the host's, and
+/// the image's hash.
+using GoldenTable = std::vector<std::pair<std::string, FlatStatistics>>;
+using GoldenTables = std::map<std::string, GoldenTable>;
+
+/// Runs them, each in a process of its own.
+GoldenTables run_golden(const GoldenGrid& grid, int jobs, const std::function<void(double)>& progress = {});
+
+/// The .csv files of the directory. Throws InputError for one that is not a table.
+GoldenTables read_golden(const std::filesystem::path& directory);
+/// Writes the tables and removes .csv files of others. One row a counter, one column a run.
+void write_golden(const std::filesystem::path& directory, const GoldenTables& tables);
+
+/// What moved from `kept` to `found`: by counter, in how many runs and how far. "" when nothing did.
+std::string golden_moves(const GoldenTables& kept, const GoldenTables& found);
+
+}  // namespace testbench

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "firmware/cn/machine.hpp"
+#include "testbench/machine/native_threads.hpp"
+
+namespace testbench {
+
+/// cn::Machine without a clock: transfers are instant, nothing costs anything. The functional reference of
+/// the tests and the fast preview. A thread runs until it waits for a semaphore without a signal.
+class NativeMachine : public cn::Machine {
+ public:
+  NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes);
+
+  std::uint8_t* mono() { return mono_.data(); }
+  std::uint64_t mono_bytes() const { return mono_.size(); }
+
+  /// The host's answer to a signal: runs at once, on the firmware's thread.
+  void on_signal(cn::Semaphore semaphore, std::function<void()> service);
+
+  /// Runs firmware until all its threads are over. Firmware of one thread may also be called as it is.
+  void run_firmware(const std::function<void(cn::Machine&)>& firmware);
+
+  void start_thread(int priority, const std::string& name, std::function<void()> body) override;
+  void sem_signal(cn::Semaphore semaphore) override;
+  void sem_wait(cn::Semaphore semaphore) override;
+  void issue_mono(std::uint64_t) override {}
+  void timed(bool on) override;
+
+ protected:
+  void retire(const char*, const cn::IssueTree&) override {}
+  void start_transfer(const cn::Transfer& transfer) override;
+  const void* read_mono_bytes(cn::MonoAddress from, std::size_t bytes) override;
+  void write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) override;
+
+ private:
+  bool is_within(cn::MonoAddress first, std::uint64_t bytes) const {
+    return first <= mono_.size() && bytes <= mono_.size() - first;
+  }
+  void check_range(cn::MonoAddress first, std::uint64_t bytes, const char* what) const;
+
+  std::vector<std::uint8_t> mono_;
+  std::array<int, kSemaphores> semaphores_{};
+  std::array<std::function<void()>, kSemaphores> services_;
+  NativeThreads threads_;
+};
+
+}  // namespace testbench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "testbench/machine/native_machine.hpp"
+#include "testbench/machine/timing_stream.hpp"
+
+namespace testbench {
+
+/// A native machine that writes down what its firmware asks of it: the firmware runs at the speed of plain
+/// code, and once, whatever the chips are that the stream is replayed on.
+class RecordingMachine : public NativeMachine {
+ public:
+  /// `stream` is empty and filled as the firmware runs; finish() completes it.
+  RecordingMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, TimingStream& stream);
+
+  /// When the firmware has ended.
+  void finish();
+
+  /// Throws cn::MachineFault: a stream has one thread.
+  void start_thread(int priority, const std::string& name, std::function<void()> body) override;
+  void sem_signal(cn::Semaphore semaphore) override;
+  void sem_wait(cn::Semaphore semaphore) override;
+  void issue_mono(std::uint64_t instructions) override;
+  void timed(bool on) override;
+
+ protected:
+  void retire(const char* kernel, const cn::IssueTree& issued) override;
+  void start_transfer(const cn::Transfer& transfer) override;
+  const void* read_mono_bytes(cn::MonoAddress from, std::size_t bytes) override;
+  void write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) override;
+
+ private:
+  TimingStream& stream_;
+  TimingStreamWriter writer_;
+  bool timed_ = true;
+  bool host_answers_ = false;
+};
+
+}  // namespace testbench

@@ -1,0 +1,287 @@
+#include "testbench/mono_image/mono_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+
+#include "firmware/path_tracer/geometry/triangle_record.hpp"
+#include "testbench/bvh/tree_image.hpp"
+#include "testbench/mono_image/faces.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+using path_tracer::CameraRecord;
+using path_tracer::LightRecord;
+using path_tracer::LightShape;
+using path_tracer::SurfaceRecord;
+using path_tracer::TriangleRecord;
+
+cn::vec3<double> to_record(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+CameraRecord camera_record(const Camera& camera, const FilmSize& film) {
+  const glm::dvec3 right = glm::cross(camera.direction, camera.up);
+  const double pixel_size = 2.0 * std::tan(0.5 * camera.vertical_field_of_view_radians) / film.height;
+  CameraRecord record;
+  record.position = to_record(camera.position);
+  record.right = to_record(right * pixel_size);
+  record.down = to_record(-camera.up * pixel_size);
+  record.corner = to_record(camera.direction - right * (0.5 * film.width * pixel_size) +
+                            camera.up * (0.5 * film.height * pixel_size));
+  record.width = film.width;
+  record.height = film.height;
+  return record;
+}
+
+TriangleRecord triangle_record(const Triangle& triangle, const path_tracer::TrianglePlace& place) {
+  return path_tracer::triangle_record(to_record(triangle.vertex[0]),
+                                      to_record(triangle.vertex[1] - triangle.vertex[0]),
+                                      to_record(triangle.vertex[2] - triangle.vertex[0]), place);
+}
+
+/// Around what the firmware takes a triangle for.
+Box padded_box(const Triangle& triangle, double reach) {
+  const path_tracer::PaddedBox<double> box = path_tracer::padded_box(
+      to_record(triangle.vertex[0]), to_record(triangle.vertex[1] - triangle.vertex[0]),
+      to_record(triangle.vertex[2] - triangle.vertex[0]), reach);
+  return {{box.lower.x, box.lower.y, box.lower.z}, {box.upper.x, box.upper.y, box.upper.z}};
+}
+
+/// From anywhere to anywhere: rays start at the camera or on triangles.
+double reach_of(const Scene& scene) {
+  Box all;
+  all.include(scene.camera.position);
+  for (const Triangle& triangle : scene.triangles) all.include(bounds_of(triangle));
+  constexpr double kRoom = 1.125;  // paddings and rounding
+  return kRoom * glm::length(all.upper - all.lower);
+}
+
+SurfaceRecord surface_record(const Triangle& triangle, const Material& material, std::int32_t face) {
+  SurfaceRecord record;
+  record.normal = to_record(glm::normalize(area_normal(triangle)));
+  record.reflectance = to_record(material.reflectance);
+  record.emission = to_record(material.emission);
+  record.face = face;
+  return record;
+}
+
+struct Lights {
+  std::vector<LightRecord> records;
+  std::vector<double> cdf;
+};
+
+/// Part of the scene that is sampled as one light.
+struct Emitter {
+  glm::dvec3 vertex;
+  glm::dvec3 edge1;
+  glm::dvec3 edge2;
+  LightShape shape;
+  std::int32_t material;
+  std::int32_t face;
+};
+
+double area(const Emitter& emitter) {
+  const double parallelogram = glm::length(glm::cross(emitter.edge1, emitter.edge2));
+  return emitter.shape == LightShape::triangle ? 0.5 * parallelogram : parallelogram;
+}
+
+/// What a light sends out in all, up to a common factor; lights are chosen in proportion to it.
+double power(const Emitter& emitter, const Scene& scene) {
+  const glm::dvec3& emission = scene.materials[std::size_t(emitter.material)].emission;
+  return area(emitter) * (emission.x + emission.y + emission.z);
+}
+
+/// The rectangle that two triangles of one face and material make, if they do: within rounding of a right
+/// angle, 2^-40.
+std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
+  constexpr double kTolerance = 0x1p-40;
+  if (a.face != b.face || a.material != b.material) return {};
+  const glm::dvec3 corners_a[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
+  const glm::dvec3 corners_b[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
+  for (int i = 0; i < 3; ++i) {
+    // The right angle at a corner of one, its opposite at a corner of the other.
+    Emitter joined = a;
+    joined.vertex = corners_a[i];
+    joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
+    joined.edge2 = corners_a[(i + 2) % 3] - joined.vertex;
+    joined.shape = LightShape::rectangle;
+    const double size = glm::length(joined.edge1) * glm::length(joined.edge2);
+    if (std::abs(glm::dot(joined.edge1, joined.edge2)) > kTolerance * size) continue;
+    const auto is_corner_of_b = [&](const glm::dvec3& point) {
+      return std::any_of(std::begin(corners_b), std::end(corners_b), [&](const glm::dvec3& corner) {
+        return glm::length(corner - point) <= kTolerance * std::sqrt(size);
+      });
+    };
+    if (is_corner_of_b(joined.vertex + joined.edge1) && is_corner_of_b(joined.vertex + joined.edge2) &&
+        is_corner_of_b(joined.vertex + joined.edge1 + joined.edge2))
+      return joined;
+  }
+  return {};
+}
+
+std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::int32_t>& faces) {
+  std::vector<Emitter> emitters;
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const Triangle& triangle = scene.triangles[i];
+    const Emitter emitter{triangle.vertex[0],
+                          triangle.vertex[1] - triangle.vertex[0],
+                          triangle.vertex[2] - triangle.vertex[0],
+                          LightShape::triangle,
+                          triangle.material,
+                          faces[i]};
+    if (power(emitter, scene) > 0) emitters.push_back(emitter);
+  }
+  return emitters;
+}
+
+/// Puts rectangles in the place of their halves, where the scene lists one after the other.
+std::vector<Emitter> join_rectangles(const std::vector<Emitter>& triangles) {
+  std::vector<Emitter> emitters;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::optional<Emitter> joined;
+    if (i + 1 < triangles.size()) joined = join(triangles[i], triangles[i + 1]);
+    emitters.push_back(joined.value_or(triangles[i]));
+    if (joined) ++i;
+  }
+  return emitters;
+}
+
+Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
+                   path_tracer::LightSampling sampling) {
+  std::vector<Emitter> emitters = find_emitters(scene, faces);
+  if (sampling == path_tracer::LightSampling::solid_angle) emitters = join_rectangles(emitters);
+  double total_power = 0;
+  for (const Emitter& emitter : emitters) total_power += power(emitter, scene);
+  if (!(total_power > 0))
+    throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
+
+  Lights lights;
+  double power_so_far = 0;
+  for (const Emitter& emitter : emitters) {
+    const double pdf = power(emitter, scene) / total_power / area(emitter);
+    LightRecord record;
+    record.vertex = to_record(emitter.vertex);
+    record.edge1 = to_record(emitter.edge1);
+    record.edge2 = to_record(emitter.edge2);
+    record.normal = to_record(glm::normalize(glm::cross(emitter.edge1, emitter.edge2)));
+    record.inverse_pdf = 1.0 / pdf;
+    record.face = emitter.face;
+    record.shape = static_cast<std::int32_t>(emitter.shape);
+    lights.records.push_back(record);
+    power_so_far += power(emitter, scene);
+    lights.cdf.push_back(power_so_far / total_power);
+  }
+  return lights;
+}
+
+template <class Record>
+void put(MonoImage& image, cn::MonoPointer<Record> to, const Record* records, std::size_t count) {
+  std::memcpy(image.bytes.data() + to.address, records, count * sizeof(Record));
+}
+
+TreeImage make_tree(const Scene& scene, double reach, const path_tracer::ProgramConfig& config) {
+  const double unit = path_tracer::to_node_unit(config.tree.layout.format, reach);
+  std::vector<Box> boxes;
+  boxes.reserve(scene.triangles.size());
+  for (const Triangle& triangle : scene.triangles) {
+    const Box box = padded_box(triangle, reach);
+    boxes.push_back({box.lower * unit, box.upper * unit});
+  }
+  return make_tree_image(boxes, config.tree);
+}
+
+/// Which of the scene's triangles lie where: leaf by leaf, or as they come.
+std::vector<std::size_t> triangles_in_order(const Scene& scene, const TreeImage& tree,
+                                            const path_tracer::ProgramConfig& config) {
+  std::vector<std::size_t> order(scene.triangles.size());
+  if (config.uses_tree()) {
+    std::transform(tree.triangles.begin(), tree.triangles.end(), order.begin(),
+                   [](std::int32_t triangle) { return std::size_t(triangle); });
+  } else {
+    std::iota(order.begin(), order.end(), std::size_t{0});
+  }
+  return order;
+}
+
+void put_triangle(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
+                  std::size_t triangle, std::size_t place) {
+  const TriangleRecord record = triangle_record(
+      scene.triangles[triangle], {faces[triangle], static_cast<std::int32_t>(triangle), image.layout.reach});
+  put(image, image.layout.triangles + place, &record, 1);
+}
+
+/// Behind the triangles: for each light all triangles of its face, so that a shadow ray that hits one of them
+/// may stop at anything nearer. A face of more triangles gets records that nothing hits: its shadow rays miss
+/// their light at first and look for the nearest hit as segments do, since any of the others may be nearer
+/// yet.
+void put_light_runs(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
+                    const Lights& lights) {
+  std::unordered_map<std::int32_t, std::vector<std::size_t>> of_face;
+  for (const LightRecord& light : lights.records) of_face[light.face];
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto found = of_face.find(faces[i]);
+    if (found != of_face.end() && found->second.size() <= path_tracer::kLightRun) found->second.push_back(i);
+  }
+  std::size_t place = scene.triangles.size();
+  for (const LightRecord& light : lights.records) {
+    const std::vector<std::size_t>& triangles = of_face[light.face];
+    const std::size_t in_run = triangles.size() <= path_tracer::kLightRun ? triangles.size() : 0;
+    for (std::size_t i = 0; i < path_tracer::kLightRun; ++i, ++place) {
+      const TriangleRecord nothing;
+      if (i < in_run) {
+        put_triangle(image, scene, faces, triangles[i], place);
+      } else {
+        put(image, image.layout.triangles + place, &nothing, 1);
+      }
+    }
+  }
+}
+
+void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces) {
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const Triangle& triangle = scene.triangles[i];
+    const SurfaceRecord record =
+        surface_record(triangle, scene.materials[std::size_t(triangle.material)], faces[i]);
+    put(image, image.layout.surfaces + i, &record, 1);
+  }
+}
+
+}  // namespace
+
+MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config) {
+  const std::vector<std::int32_t> faces = number_faces(scene.triangles);
+  const Lights lights = make_lights(scene, faces, config.light_sampling);
+  const double reach = reach_of(scene);
+  TreeImage tree;
+  if (config.uses_tree()) tree = make_tree(scene, reach, config);
+
+  path_tracer::SceneCounts counts;
+  counts.triangles = static_cast<int>(scene.triangles.size());
+  counts.lights = static_cast<int>(lights.records.size());
+  counts.tree_slots = static_cast<int>(tree.slots);
+  MonoImage image;
+  image.layout = path_tracer::make_layout(counts, num_pes, config);
+  image.layout.reach = reach;
+  image.bytes.resize(image.layout.scene_bytes);
+  const CameraRecord camera = camera_record(scene.camera, scene.film);
+  put(image, image.layout.camera, &camera, 1);
+  const std::vector<std::size_t> order = triangles_in_order(scene, tree, config);
+  for (std::size_t place = 0; place < order.size(); ++place)
+    put_triangle(image, scene, faces, order[place], place);
+  if (config.uses_tree()) put_light_runs(image, scene, faces, lights);
+  put_surfaces(image, scene, faces);
+  put(image, image.layout.lights, lights.records.data(), lights.records.size());
+  put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
+  if (config.uses_tree())
+    std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
+  return image;
+}
+
+}  // namespace testbench

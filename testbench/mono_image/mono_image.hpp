@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/path_tracer/program/program.hpp"
+#include "testbench/scene/scene.hpp"
+
+namespace testbench {
+
+/// What the host writes to mono memory before a run, from address 0.
+struct MonoImage {
+  path_tracer::Layout layout;
+  std::vector<std::uint8_t> bytes;  ///< layout.scene_bytes of them
+};
+
+/// Lays a scene out for the firmware. Throws InputError for a scene without light.
+MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config);
+
+}  // namespace testbench

@@ -1,0 +1,131 @@
+#include "testbench/observe/wave_files.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+/// What the view opens on when fewer blocks were computed: a few of the paper's intersection bin.
+constexpr std::uint64_t kViewPicoseconds = 300'000'000;
+
+/// Blocks that the view opens on, from the second in the window on: its neighbours are seen as well.
+constexpr std::size_t kBlocksInView = 4;
+
+model::MemoryCounters memory_counters(const model::Csx600& chip) {
+  const model::DdrStatistics ddr = chip.ddr_statistics();
+  return {ddr.page_hits, ddr.page_misses, ddr.bytes_read, ddr.bytes_written,
+          chip.clear_connect.statistics(model::Initiator::pio).bytes};
+}
+
+std::filesystem::path sibling(const std::filesystem::path& file, const std::string& suffix) {
+  std::filesystem::path path = file;
+  return path.replace_extension().concat(suffix);
+}
+
+void add_names(std::vector<model::ValueName>& names, std::uint64_t first,
+               const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    std::string name = text;
+    std::replace(name.begin(), name.end(), ' ', '_');  // a translate filter ends a name at a blank
+    names.push_back({first++, name});
+  }
+}
+
+}  // namespace
+
+void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip) {
+  const std::filesystem::path extension = options.file.extension();
+  if (extension != ".vcd" && extension != ".fst")
+    throw InputError("--waves: found '" + options.file.string() +
+                     "', allowed is a name that ends in .vcd or .fst");
+  require_writable(options.file);
+  require_writable(sibling(options.file, ".gtkw"));
+  try {
+    model::check_waves(options.config, chip);
+  } catch (const model::WaveError& error) {
+    throw InputError(error.what());
+  }
+}
+
+WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
+    : chip_(chip), file_(options.file), stream_(make_wave_stream(options.file)) {
+  try {
+    probe_ = std::make_unique<model::WaveProbe>(
+        "wave_probe", options.config, chip.config(), [this](std::string_view text) { stream_->write(text); },
+        [&chip] { return memory_counters(chip); });
+  } catch (const model::WaveError& error) {
+    throw InputError(error.what());
+  }
+  using model::WaveSignal;
+  if (probe_->shows(WaveSignal::clear_connect_to_ddr) || probe_->shows(WaveSignal::clear_connect_from_ddr))
+    chip.clear_connect.set_observer(&*probe_);
+  const bool shows_ddr = probe_->shows(WaveSignal::ddr_bus) || probe_->shows_ddr_commands();
+  if (chip.mono_ddr && shows_ddr) chip.mono_ddr->set_observer(&*probe_, probe_->shows_ddr_commands());
+}
+
+void WaveFiles::finish() {
+  try {
+    probe_->finish();
+  } catch (const model::WaveError& error) {
+    throw RunError(file_.string() + ": " + error.what());
+  }
+  stream_->finish();
+  write_view();
+}
+
+std::vector<model::ValueName> WaveFiles::value_names(const model::WaveSignalInfo& signal) const {
+  std::vector<model::ValueName> names = signal.fixed_names;
+  switch (signal.names) {
+    case model::WaveNames::kernels:
+      add_names(names, 1, probe_->kernel_names());
+      break;
+    case model::WaveNames::bins:
+      add_names(names, 1, probe_->bin_names());
+      break;
+    case model::WaveNames::semaphores:
+      add_names(names, 0, chip_.control_unit.semaphore_names());
+      break;
+    default:
+      break;
+  }
+  return names;
+}
+
+void WaveFiles::set_span(model::ViewOptions& view) const {
+  const std::uint64_t start = probe_->window_start().value();
+  const std::uint64_t recorded = probe_->window_end().value() - start;
+  view.first_picoseconds = start;
+  view.span_picoseconds = std::clamp<std::uint64_t>(recorded, 1, kViewPicoseconds);
+  const std::vector<model::Cycles>& blocks = probe_->block_starts();
+  if (blocks.size() < kBlocksInView + 2) return;
+  view.first_picoseconds = chip_.clock.time_at(blocks[1]).value();
+  view.span_picoseconds = chip_.clock.time_at(blocks[kBlocksInView + 1]).value() - view.first_picoseconds;
+}
+
+void WaveFiles::write_view() const {
+  model::ViewOptions view;
+  view.view_file = sibling(file_, ".gtkw").filename().string();
+  view.wave_file = file_.filename().string();
+  view.signals = probe_->signals();
+  set_span(view);
+  for (const model::WaveSignalInfo& signal : model::wave_signal_table()) {
+    const std::vector<model::ValueName> names = value_names(signal);
+    if (names.empty() || !probe_->shows(signal.id)) continue;
+    std::string suffix = "." + std::string(signal.scope) + "_" + std::string(signal.name) + ".txt";
+    std::replace(suffix.begin() + 1, suffix.end() - 4, '.', '_');
+    const std::filesystem::path file = sibling(file_, suffix);
+    std::ostringstream filter;
+    model::write_value_filter(filter, names);
+    write_bytes_atomically(file, filter.str());
+    view.filter_files.emplace_back(signal.id, file.filename().string());
+  }
+  std::ostringstream text;
+  model::write_wave_view(text, view);
+  write_bytes_atomically(sibling(file_, ".gtkw"), text.str());
+}
+
+}  // namespace testbench

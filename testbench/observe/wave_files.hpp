@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/csx600.hpp"
+#include "model/waves/wave_probe.hpp"
+#include "model/waves/wave_signals.hpp"
+#include "model/waves/wave_view.hpp"
+#include "testbench/observe/observation_options.hpp"
+#include "testbench/system/output_stream.hpp"
+
+namespace testbench {
+
+/// Throws InputError when the trace or what stands beside it cannot be written, or the selection or a window
+/// is empty.
+void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip);
+
+/// The waves of one run: the trace, a GTKWave view on its first blocks and the names of states and kernels.
+class WaveFiles {
+ public:
+  WaveFiles(const WaveOptions& options, model::Csx600& chip);
+
+  model::ChipObserver& observer() { return *probe_; }
+
+  /// After the run. Throws RunError if nothing ran in the windows or a file is not complete; then none of
+  /// them is left.
+  void finish();
+
+ private:
+  void write_view() const;
+  std::vector<model::ValueName> value_names(const model::WaveSignalInfo& signal) const;
+  void set_span(model::ViewOptions& view) const;
+
+  model::Csx600& chip_;
+  std::filesystem::path file_;
+  std::unique_ptr<OutputStream> stream_;
+  std::unique_ptr<model::WaveProbe> probe_;
+};
+
+}  // namespace testbench

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "testbench/paper/calibration.hpp"
+
+namespace testbench {
+
+/// `base` first, then one set of assumptions for each thing that the paper leaves open, all else as in
+/// `base`: clock, chips, primitives, an open or closed box, roulette, length of the bins, shadow rays, PIO
+/// arbitration, and a fit without the cost of a call.
+std::vector<Assumptions> paper_alternatives(const Assumptions& base, const Scene& closed_box);
+
+/// Every triangle cut into four of the same shape.
+Scene with_four_times_the_triangles(const Scene& scene);
+
+}  // namespace testbench

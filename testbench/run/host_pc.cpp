@@ -1,0 +1,53 @@
+#include "testbench/run/host_pc.hpp"
+
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "model/transaction/payload.hpp"
+
+namespace testbench {
+
+using path_tracer::HostSemaphores;
+
+HostPc::HostPc(const sc_core::sc_module_name& name, model::Csx600& chip, const MonoImage& image, Film& film)
+    : sc_module(name), chip_(chip), image_(image), results_(image.layout, film) {
+  chip_.control_unit.share_with_host(HostSemaphores::kResultsReady);
+  chip_.control_unit.share_with_host(HostSemaphores::kResultsFree);
+  chip_.control_unit.on_untimed_signal([this] { fetch_untimed_results(); });
+  SC_HAS_PROCESS(HostPc);
+  SC_THREAD(run);
+}
+
+void HostPc::wait_until(model::Cycles cycle) {
+  const sc_core::sc_time target = chip_.clock.time_at(cycle);
+  if (target > sc_core::sc_time_stamp()) wait(target - sc_core::sc_time_stamp());
+}
+
+void HostPc::run() {
+  wait_until(chip_.host_link.upload(0, image_.bytes.data(), image_.bytes.size(), now()));
+  chip_.control_unit.start();
+  while (true) {
+    while (chip_.control_unit.host_try_wait(HostSemaphores::kResultsReady)) fetch_results();
+    if (chip_.control_unit.finished()) break;
+    wait(chip_.control_unit.host_event() | chip_.control_unit.finished_event());
+  }
+  finished_cycle_ = now();
+  finished_ = true;
+}
+
+void HostPc::fetch_results() {
+  results_.fetch([this](cn::MonoAddress from, void* to, std::size_t bytes) {
+    if (checker_ != nullptr) checker_->host_touches_mono(cn::Access::read, {from, bytes});
+    wait_until(chip_.host_link.download(from, to, bytes, now()));
+  });
+  chip_.control_unit.host_signal(HostSemaphores::kResultsFree);
+}
+
+/// For programs that are timed without radiance: their results are not part of the run.
+void HostPc::fetch_untimed_results() {
+  results_.fetch([this](cn::MonoAddress from, void* to, std::size_t bytes) {
+    tlm::tlm_generic_payload transaction;
+    model::set_access(transaction, tlm::TLM_READ_COMMAND, from, static_cast<unsigned char*>(to), bytes);
+    chip_.host_link.socket->transport_dbg(transaction);
+  });
+}
+
+}  // namespace testbench

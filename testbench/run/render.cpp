@@ -1,0 +1,187 @@
+#include "testbench/run/render.hpp"
+
+#include <cstring>
+#include <memory>
+
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "model/hazards/hazard_checker.hpp"
+#include "testbench/machine/native_machine.hpp"
+#include "testbench/machine/recording_machine.hpp"
+#include "testbench/mono_image/mono_image.hpp"
+#include "testbench/observe/observation.hpp"
+#include "testbench/run/host_pc.hpp"
+#include "testbench/run/results.hpp"
+#include "testbench/system/error.hpp"
+#include "testbench/system/host_time.hpp"
+
+namespace testbench {
+namespace {
+
+/// What firmware and image builder refuse, as errors of the input.
+template <class Work>
+auto with_input_errors(Work&& work) {
+  try {
+    return work();
+  } catch (const path_tracer::ProgramError& error) {
+    throw InputError(error.what());
+  } catch (const cn::PolyMemoryOverflow& error) {
+    const std::string map = error.map().substr(0, error.map().find_last_not_of('\n') + 1);
+    throw InputError(std::string(error.what()) + "; buffers of a PE:\n" + map);
+  } catch (const cn::MachineFault& fault) {
+    throw RunError(fault.what());
+  }
+}
+
+/// Keeps the count of paths and the wish to stop between the firmware and the caller.
+class ProgressRelay {
+ public:
+  ProgressRelay(const Scene& scene, const path_tracer::Work& work, const RenderProgress& progress)
+      : total_(double(scene.film.width) * scene.film.height * work.samples), progress_(progress) {}
+
+  bool operator()(std::uint64_t paths_issued) {
+    if (progress_ && !progress_(double(paths_issued) / total_)) interrupted_ = true;
+    return !interrupted_;
+  }
+  bool interrupted() const { return interrupted_; }
+
+ private:
+  double total_;
+  const RenderProgress& progress_;
+  bool interrupted_ = false;
+};
+
+void require_mono_memory(const std::string& least, std::uint64_t bytes, const model::ChipConfig& chip) {
+  if (bytes <= chip.ddr.size_bytes) return;
+  throw InputError("scene and bins need " + least + std::to_string(bytes) +
+                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
+}
+
+/// What both kinds of run have around the machine.
+class Run {
+ public:
+  Run(const Scene& scene, const RenderOptions& options, const RenderProgress& progress)
+      : options_(options),
+        image_(checked_image(scene, options)),
+        relay_(scene, options.work, progress),
+        result_(Film(scene.film, film_scale(scene))) {}
+
+  const MonoImage& image() const { return image_; }
+  RenderResult& result() { return result_; }
+
+  /// Before anything runs on the machine. Returns the checker, or null when hazards are not to be checked.
+  model::HazardChecker* check_hazards(cn::Machine& machine, model::HazardChecker::Clock clock) {
+    if (!options_.check_hazards) return nullptr;
+    checker_.emplace(machine, std::move(clock));
+    for (const path_tracer::Layout::Region& region : image_.layout.regions)
+      checker_->name_mono(region.name, {region.first, region.bytes});
+    machine.set_access_observer(&*checker_);
+    return &*checker_;
+  }
+
+  /// Builds the firmware on a machine and runs it to its end.
+  void firmware(cn::Machine& machine) {
+    const path_tracer::Kernels& kernels =
+        checker_ ? path_tracer::observed_kernels() : path_tracer::kernels(options_.level);
+    path_tracer::PathTracer tracer(machine, kernels, options_.program, image_.layout, options_.work);
+    tracer.run(std::ref(relay_));
+    result_.counts = tracer.counts();
+    if (checker_ && !relay_.interrupted()) checker_->firmware_ends();
+  }
+
+  RenderResult finish() {
+    if (checker_) checker_->throw_if_found();
+    result_.cpu_seconds = timer_.cpu_seconds();
+    result_.wall_seconds = timer_.wall_seconds();
+    if (relay_.interrupted()) throw RunError("interrupted; nothing was written");
+    require_no_rejected_samples(result_.film);
+    return std::move(result_);
+  }
+
+ private:
+  /// The image of ten million triangles takes a minute; that their records alone are too many is known
+  /// before.
+  static void require_memory_for_triangles(const Scene& scene, const RenderOptions& options) {
+    const int slots = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
+    const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots};
+    const path_tracer::Layout layout =
+        path_tracer::make_layout(least, options.chip.chip.pes, options.program);
+    require_mono_memory("at least ", layout.total_bytes, options.chip);
+  }
+
+  static MonoImage checked_image(const Scene& scene, const RenderOptions& options) {
+    path_tracer::validate(options.program);
+    require_memory_for_triangles(scene, options);
+    MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
+    require_mono_memory(image, options.chip);
+    return image;
+  }
+
+  const RenderOptions& options_;
+  MonoImage image_;
+  ProgressRelay relay_;
+  RenderResult result_;
+  std::optional<model::HazardChecker> checker_;
+  HostTimer timer_;
+};
+
+/// A machine without a clock; a recording one where a stream is wanted.
+std::unique_ptr<NativeMachine> native_machine(const model::ChipConfig& chip, std::uint64_t mono_bytes,
+                                              TimingStream* record) {
+  if (record == nullptr)
+    return std::make_unique<NativeMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes);
+  return std::make_unique<RecordingMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, *record);
+}
+
+}  // namespace
+
+void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) {
+  require_mono_memory("", image.layout.total_bytes, chip);
+}
+
+RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
+                            const RenderProgress& progress) {
+  return with_input_errors([&] {
+    Run run(scene, options, progress);
+    model::Csx600 chip("csx600", options.chip, options.timing);
+    HostPc host("host", chip, run.image(), run.result().film);
+    host.report_reads_to(run.check_hazards(chip.control_unit, [&] { return chip.control_unit.now(); }));
+    Observation observation(options.observation, chip);
+    chip.control_unit.load([&](cn::Machine& machine) { run.firmware(machine); });
+    sc_core::sc_start();
+    chip.control_unit.require_finished();
+    if (!host.finished()) throw RunError("the firmware has ended, but the host has not");
+    run.result().chip = collect_statistics(chip, host.finished_cycle());
+    RenderResult result = run.finish();
+    result.observation_failures = observation.finish();
+    return result;
+  });
+}
+
+RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress,
+                             TimingStream* record) {
+  return with_input_errors([&] {
+    Run run(scene, options, progress);
+    const path_tracer::Layout& layout = run.image().layout;
+    const std::unique_ptr<NativeMachine> owned = native_machine(options.chip, layout.total_bytes, record);
+    NativeMachine& machine = *owned;
+    std::memcpy(machine.mono(), run.image().bytes.data(), run.image().bytes.size());
+    ResultReader results(layout, run.result().film);
+    model::HazardChecker* const checker = run.check_hazards(machine, {});
+    machine.on_signal(path_tracer::HostSemaphores::kResultsReady, [&] {
+      results.fetch([&](cn::MonoAddress from, void* to, std::size_t bytes) {
+        if (checker != nullptr) checker->host_touches_mono(cn::Access::read, {from, bytes});
+        std::memcpy(to, machine.mono() + from, bytes);
+      });
+      machine.sem_signal(path_tracer::HostSemaphores::kResultsFree);
+    });
+    run.firmware(machine);
+    if (auto* const recording = dynamic_cast<RecordingMachine*>(&machine)) recording->finish();
+    return run.finish();
+  });
+}
+
+void require_observed(const RenderResult& result) {
+  if (!result.observation_failures.empty()) throw RunError(result.observation_failures);
+}
+
+}  // namespace testbench

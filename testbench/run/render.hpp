@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "firmware/path_tracer/kernels/kernels.hpp"
+#include "model/config/chip_config.hpp"
+#include "model/config/timing_style.hpp"
+#include "testbench/film/film.hpp"
+#include "testbench/mono_image/mono_image.hpp"
+#include "testbench/observe/observation_options.hpp"
+#include "testbench/run/chip_statistics.hpp"
+#include "testbench/scene/scene.hpp"
+
+namespace testbench {
+
+class TimingStream;
+
+struct RenderOptions {
+  model::ChipConfig chip;
+  path_tracer::ProgramConfig program;
+  path_tracer::Work work;
+  model::TimingStyle timing = model::TimingStyle::loosely_timed;
+  path_tracer::Level level = path_tracer::Level::x86_64_v2;
+  ObservationOptions observation;  ///< on the chip only
+  bool check_hazards = false;  ///< with kernels built for it, at x86-64-v2 (model/hazards/hazard_checker.hpp)
+};
+
+struct RenderResult {
+  explicit RenderResult(Film empty) : film(std::move(empty)) {}
+
+  Film film;
+  path_tracer::RunCounts counts;
+  std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip
+  std::string observation_failures;    ///< files that could not be completed, one line each
+  double cpu_seconds = 0;              ///< of the run itself, without loading and writing
+  double wall_seconds = 0;
+};
+
+/// Told the share of camera paths issued; returns false to interrupt the run.
+using RenderProgress = std::function<bool(double share)>;
+
+/// The firmware on the SystemC model. At most one a process, as SystemC elaborates once.
+/// Throws InputError for what does not fit the chip, RunError for a run that failed or was interrupted.
+RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
+                            const RenderProgress& progress = {});
+
+/// The same firmware without SystemC: the same image, no time. What the firmware asks of its machine is added
+/// to `record`, an empty stream, unless it is null.
+RenderResult render_natively(const Scene& scene, const RenderOptions& options,
+                             const RenderProgress& progress = {}, TimingStream* record = nullptr);
+
+/// Throws InputError when scene and bins need more mono memory than the chip has.
+void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip);
+
+/// Throws RunError if what was to be observed could not be written.
+void require_observed(const RenderResult& result);
+
+using cn::widest_level;
+
+}  // namespace testbench

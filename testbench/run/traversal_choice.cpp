@@ -1,0 +1,219 @@
+#include "testbench/run/traversal_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "firmware/path_tracer/kernels/kernels.hpp"
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "testbench/machine/native_machine.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+using path_tracer::ProgramConfig;
+using path_tracer::Traversal;
+
+/// Cycles of a poly program on all PEs.
+double cycles_of(const cn::IssueCounts& counts, const model::ChipConfig& chip) {
+  double cycles = 0;
+  for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
+    if (cn::InstructionClass(i) != cn::InstructionClass::mono)
+      cycles += double(counts.by_class[i]) * chip.poly.cycles[i];
+  return cycles * chip.poly.code_quality_factor;
+}
+
+/// What the intersect kernel issues for so many triangles.
+double intersect_cycles(int triangles, const model::ChipConfig& chip) {
+  constexpr int kPes = 8;
+  cn::PolyMemory memory(kPes, 1024);
+  const std::vector<path_tracer::TriangleRecord> records(std::size_t(triangles) + 1);
+  cn::LaneMask hit;
+  path_tracer::IntersectArguments arguments;
+  arguments.ray =
+      cn::PolyPointer<path_tracer::RayRecord>(memory.allocate("ray", sizeof(path_tracer::RayRecord)));
+  arguments.hit =
+      cn::PolyPointer<path_tracer::HitRecord>(memory.allocate("hit", sizeof(path_tracer::HitRecord)));
+  arguments.surface_place = {memory.allocate("place", sizeof(cn::MonoAddress)).offset_bytes};
+  arguments.triangles = records.data();
+  arguments.triangle_count = triangles;
+  arguments.hit_something = &hit;
+  cn::IssueTree issued;
+  path_tracer::kernels(path_tracer::Level::x86_64_v2)
+      .intersect.run(arguments, memory, cn::LaneMask::first(kPes), issued);
+  return cycles_of(issued.total(), chip);
+}
+
+/// Of a ray on its way through the tree, by the number of triangles: measured on `csx600 scene blob`.
+struct Visits {
+  double leaves;
+  double treelets;
+  double turns;
+};
+Visits visits_of_a_ray(std::size_t triangles) {
+  const double doublings = std::max(0.0, std::log2(double(std::max<std::size_t>(1, triangles)) / 50));
+  return {3.0, 0.25 * doublings, 4.1 + 0.28 * doublings};
+}
+
+/// What the kernels of a turn take, in tests of a triangle, and the share of PEs that have a ray; as above.
+constexpr double kTrianglesOfATurn = 28;
+constexpr double kOccupancy = 0.8;
+
+/// When the data cache does not hold all triangles from one block to the next.
+double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
+  const double lines = double(sizeof(path_tracer::TriangleRecord)) / chip.control.cache_line_bytes;
+  return lines * (chip.control.cache_miss_cycles + chip.ddr.page_miss_cycles +
+                  2.0 * chip.clear_connect.hops_to_ddr * chip.clear_connect.hop_cycles +
+                  double(chip.control.cache_line_bytes) / chip.clear_connect.bytes_per_cycle);
+}
+
+/// Of a PE's SRAM, beside everything else; below 0 if that does not fit. Where resident nodes are as many as
+/// fit, one is counted. Throws InputError for a program that the firmware refuses.
+int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) try {
+  ProgramConfig least = program;
+  if (least.tree.resident_nodes == kAsManyAsFit) least.tree.resident_nodes = 1;
+  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
+  constexpr int kPlenty = 1 << 18;
+  NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
+  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least,
+                                      layout, {});
+  return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
+} catch (const cn::PolyMemoryOverflow&) {
+  return -1;  // not even with plenty
+} catch (const path_tracer::ProgramError& error) {
+  throw InputError(error.what());
+}
+
+/// Whether eight children a node cost less than four. Packets never go round: four are best.
+bool suits_wide_nodes(Traversal traversal, std::size_t triangles) {
+  return traversal != Traversal::packets && triangles >= 5000;
+}
+
+/// Rays that wait for I/O do best with the fewest bytes, those that wait for kernels with what is decoded
+/// soonest.
+path_tracer::NodeFormat suited_format(Traversal traversal, int width) {
+  const bool waits_for_kernels = traversal == Traversal::lock_step || traversal == Traversal::packets;
+  const path_tracer::NodeLayout quantised{path_tracer::NodeFormat::quantised8, width};
+  return waits_for_kernels || !quantised.has_kernel() ? path_tracer::NodeFormat::fp32 : quantised.format;
+}
+
+/// The more the faster a node is visited, and the more to go round once more costs.
+int suited_visits(Traversal traversal, const path_tracer::NodeLayout& layout) {
+  const bool is_fast = layout.format == path_tracer::NodeFormat::fp32;
+  switch (traversal) {
+    case Traversal::lock_step:
+      return layout.width == 2 ? 3 : 2;
+    case Traversal::refill:
+      return layout.width == 8 ? (is_fast ? 3 : 2) : (is_fast || layout.width == 2 ? 6 : 3);
+    default:
+      return layout.width == 8 ? 3 : layout.width == 4 ? 6 : 8;
+  }
+}
+
+path_tracer::TreeShape suited_tree(int width, const ProgramConfig& of, const TreeWishes& wishes) {
+  constexpr int kTreeletChildren = 8;
+  path_tracer::TreeShape tree = of.tree;
+  tree.layout.width = width;
+  tree.layout.format = wishes.node_format.value_or(suited_format(of.traversal, width));
+  tree.treelet_nodes = wishes.treelet_nodes.value_or(kTreeletChildren / width);
+  tree.stack_entries = wishes.stack_entries.value_or(tree.stack_entries);
+  tree.visits = wishes.visits.value_or(suited_visits(of.traversal, tree.layout));
+  return tree;
+}
+
+/// With a shorter stack, then with smaller treelets.
+std::optional<path_tracer::TreeShape> shrunk_to_fit(const ProgramConfig& program,
+                                                    const model::ChipConfig& chip, const TreeWishes& wishes) {
+  // Segments a second by the temporary bin, 100,000 triangles: 159 k with treelets of 2 nodes and 2 entries,
+  // 152 k with 1 node and 8 entries, 138 k with 2 nodes and 1 entry.
+  constexpr int kFewEntries = 2;
+  ProgramConfig fitting = program;
+  path_tracer::TreeShape& tree = fitting.tree;
+  for (;; tree.treelet_nodes /= 2) {
+    const bool is_least_treelet = tree.treelet_nodes <= 1 || wishes.treelet_nodes.has_value();
+    const int least_entries = is_least_treelet ? 0 : kFewEntries;
+    for (tree.stack_entries = program.tree.stack_entries;; tree.stack_entries /= 2) {
+      if (bytes_left(fitting, chip) >= 0) return tree;
+      if (tree.stack_entries <= least_entries || wishes.stack_entries.has_value()) break;
+    }
+    if (is_least_treelet) return {};
+  }
+}
+
+std::string in_words(double cycles) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.0f", cycles);
+  return text;
+}
+
+}  // namespace
+
+TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
+                                  const model::ChipConfig& chip) {
+  const double pes = chip.chip.pes;
+  TraversalCosts costs;
+  const double triangle_cycles = intersect_cycles(1, chip) - intersect_cycles(0, chip);
+  const double bytes = double(triangles) * sizeof(path_tracer::TriangleRecord);
+  const double fetch_cycles = bytes > chip.control.data_cache_bytes ? fetch_cycles_of_a_triangle(chip) : 0;
+  costs.brute_force = (triangle_cycles + fetch_cycles) * double(triangles) / pes;
+  const Visits visits = visits_of_a_ray(triangles);
+  const auto request = [&](double of_bytes) {
+    return chip.pio.per_pe_cycles + of_bytes / chip.pio.bytes_per_cycle;
+  };
+  const double leaf_bytes = double(tree.leaf_records()) * sizeof(path_tracer::TriangleRecord);
+  const double pio = visits.leaves * request(leaf_bytes) + visits.treelets * request(tree.treelet_bytes()) +
+                     2 * request(sizeof(path_tracer::QueuedRay)) + request(sizeof(path_tracer::HitRecord)) +
+                     request(sizeof(cn::MonoAddress));
+  const double kernels = visits.turns * kTrianglesOfATurn * triangle_cycles / (pes * kOccupancy);
+  costs.tree = std::max(pio, kernels);
+  return costs;
+}
+
+TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
+                                 const model::ChipConfig& chip) {
+  const TraversalCosts costs = estimate_traversal(triangles, tree, chip);
+  const bool uses_tree = costs.tree < costs.brute_force;
+  return {uses_tree ? Traversal::refill : Traversal::brute_force,
+          std::to_string(triangles) + " triangles: about " + in_words(costs.brute_force) +
+              " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
+}
+
+path_tracer::TreeShape wished_tree(const ProgramConfig& program, const TreeWishes& wishes) {
+  return suited_tree(wishes.node_width.value_or(program.tree.layout.width), program, wishes);
+}
+
+path_tracer::TreeShape tree_that_fits(std::size_t triangles, const ProgramConfig& program,
+                                      const model::ChipConfig& chip, const TreeWishes& wishes) {
+  ProgramConfig suited = program;
+  if (!wishes.node_width && suits_wide_nodes(program.traversal, triangles)) {
+    suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program, wishes);
+    if (const auto fitting = shrunk_to_fit(suited, chip, wishes)) return *fitting;
+  }
+  suited.tree = wished_tree(program, wishes);
+  return shrunk_to_fit(suited, chip, wishes).value_or(suited.tree);
+}
+
+int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program,
+                            const model::ChipConfig& chip) {
+  ProgramConfig least = program;
+  least.tree.resident_nodes = 1;
+  const int left = bytes_left(least, chip);
+  const auto nodes_of_tree =
+      static_cast<int>(std::min<std::size_t>(triangles, path_tracer::kMaxTreeletNodes));
+  return std::clamp(1 + left / program.tree.layout.node_bytes(), 1, std::max(1, nodes_of_tree));
+}
+
+void complete_traversal(std::size_t triangles, const model::ChipConfig& chip, ProgramConfig& program) {
+  if (!program.uses_tree() || program.tree.resident_nodes != kAsManyAsFit) return;
+  program.tree.resident_nodes = resident_nodes_that_fit(triangles, program, chip);
+}
+
+void fit_tree(std::size_t triangles, const model::ChipConfig& chip, const TreeWishes& wishes,
+              ProgramConfig& program) {
+  if (program.uses_tree()) program.tree = tree_that_fits(triangles, program, chip, wishes);
+  complete_traversal(triangles, chip, program);
+}
+
+}  // namespace testbench

@@ -1,0 +1,275 @@
+#include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/energy.hpp"
+#include "testbench/statistics/roofline.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Chip = ChipStatistics;
+constexpr CounterKind kDerived = CounterKind::derived;
+
+Json cycles_by_cause(const Chip& chip) {
+  Json cycles = Json::object();
+  for (int i = 0; i < model::kCycleCauses; ++i)
+    cycles[model::cycle_cause_name(model::CycleCause(i))] = chip.control.cycles[std::size_t(i)];
+  return cycles;
+}
+
+Json joules_by_cause(const Chip& chip) {
+  Json joules = Json::object();
+  for (const Energy::Cause& cause : energy_of(chip).causes) joules[cause.name] = cause.joules;
+  return joules;
+}
+
+Json watts(const Chip& chip, double joules) {
+  return chip.total_cycles > 0 ? joules / chip.total_seconds() : 0;
+}
+
+Json non_zero(const cn::IssueCounts& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < cn::kInstructionClasses; ++i)
+    if (counts.by_class[i] != 0) json[std::string(cn::kInstructionClassNames[i])] = counts.by_class[i];
+  return json;
+}
+
+/// None, eighths of the PEs, and all: "0", "1-12", ..., "85-95", "96".
+Json runs_by_enabled_pes(const KernelOnArray& of) {
+  constexpr int kBuckets = 8;
+  const std::vector<std::uint64_t>& runs = of.kernel.runs_by_enabled_pes;
+  Json json = Json::object();
+  json["0"] = runs.front();
+  for (int bucket = 0; bucket < kBuckets; ++bucket) {
+    const int first = of.num_pes * bucket / kBuckets + 1;
+    const int last = std::min(of.num_pes * (bucket + 1) / kBuckets, of.num_pes - 1);
+    if (first > last) continue;
+    std::uint64_t sum = 0;
+    for (int pes = first; pes <= last; ++pes) sum += runs[std::size_t(pes)];
+    json[first == last ? std::to_string(first) : std::to_string(first) + "-" + std::to_string(last)] = sum;
+  }
+  json[std::to_string(of.num_pes)] = runs.back();
+  return json;
+}
+
+/// Of enabled PEs.
+std::uint64_t sram_bytes(const cn::IssueCounts& executed) {
+  constexpr std::uint64_t kWordBytes = 4;
+  return kWordBytes *
+         (executed[cn::InstructionClass::sram] + executed[cn::InstructionClass::sram_vector_load]);
+}
+
+Counters<Chip> unit_counters() {
+  return {
+      {{"clock_hz", "Hz", "the chip's clock"}, [](const Chip& c) { return Json(c.config.chip.clock_hz); }},
+      {{"pes", "count", "processing elements"}, [](const Chip& c) { return Json(c.config.chip.pes); }},
+      {{"total_cycles", "cycles", "with upload and download"},
+       [](const Chip& c) { return Json(c.total_cycles); }},
+      {{"pe_utilisation", "-", "share of the firmware's time in which kernels ran", kDerived},
+       [](const Chip& c) { return Json(c.pe_utilisation()); }},
+      {{"simd_efficiency", "-", "enabled share of the issued lane-cycles", kDerived},
+       [](const Chip& c) { return Json(c.simd_efficiency()); }},
+      {{"exposed_pio_share", "-",
+        "share of the firmware's time in which the control unit only waited for programmed I/O", kDerived},
+       [](const Chip& c) { return Json(c.exposed_pio_share()); }},
+      {{"ddr_bytes_per_second", "bytes/s", "through the DDR's data bus", kDerived},
+       [](const Chip& c) { return Json(c.ddr_bytes_per_second()); }},
+      {{"control_unit.cycles_by_cause.*", "cycles",
+        "what the firmware's time went to; the sum is simulated_cycles"},
+       cycles_by_cause},
+      {{"control_unit.mono_instructions", "count", "instructions of the control unit outside kernels"},
+       [](const Chip& c) { return Json(c.control.mono_instructions); }},
+      {{"control_unit.data_cache_hits", "count", "lines of mono data found in the cache"},
+       [](const Chip& c) { return Json(c.control.data_cache_hits); }},
+      {{"control_unit.data_cache_misses", "count", "lines fetched from mono memory"},
+       [](const Chip& c) { return Json(c.control.data_cache_misses); }},
+      {{"control_unit.thread_switches", "count", "from one hardware thread to another"},
+       [](const Chip& c) { return Json(c.control.thread_switches); }},
+      {{"control_unit.exposed_wait_after_last_kernel_cycles", "cycles",
+        "waits for programmed I/O that no kernel follows"},
+       [](const Chip& c) { return Json((c.control.pio_waits() - c.all_kernels.waited_before).total()); }},
+      {{"pio.requests_mono_to_poly", "count", "requests that load"},
+       [](const Chip& c) { return Json(c.pio.requests_to_poly); }},
+      {{"pio.requests_poly_to_mono", "count", "requests that save"},
+       [](const Chip& c) { return Json(c.pio.requests_to_mono); }},
+      {{"pio.empty_requests", "count", "requests without an enabled PE, not among the others"},
+       [](const Chip& c) { return Json(c.pio.empty_requests); }},
+      {{"pio.bytes_mono_to_poly", "bytes", "loaded, in all PEs"},
+       [](const Chip& c) { return Json(c.pio.bytes_to_poly); }},
+      {{"pio.bytes_poly_to_mono", "bytes", "saved, in all PEs"},
+       [](const Chip& c) { return Json(c.pio.bytes_to_mono); }},
+      {{"pio.pes", "count", "PEs that took part, summed over requests"},
+       [](const Chip& c) { return Json(c.pio.pes); }},
+      {{"pio.busy_cycles", "cycles", "of the engine: setup, PEs and memory"},
+       [](const Chip& c) { return Json(c.pio.busy_cycles()); }},
+      {{"pio.setup_cycles", "cycles", "before a request's first PE"},
+       [](const Chip& c) { return Json(c.pio.setup_cycles); }},
+      {{"pio.pe_cycles", "cycles", "taking PEs one by one, misalignment included"},
+       [](const Chip& c) { return Json(c.pio.pe_cycles); }},
+      {{"pio.memory_wait_cycles", "cycles", "in service while only the memory worked"},
+       [](const Chip& c) { return Json(c.pio.memory_wait_cycles); }},
+      {{"pio.queue_wait_cycles", "cycles", "from enqueueing to the start, summed over requests"},
+       [](const Chip& c) { return Json(c.pio.queue_wait_cycles); }},
+      {{"pio.max_queue_depth", "count", "requests waiting at most"},
+       [](const Chip& c) { return Json(c.pio.max_queue_depth); }},
+      {{"poly_sram.peak_bytes", "bytes", "of a PE in use at most"},
+       [](const Chip& c) { return Json(c.poly_sram.peak_bytes); }},
+      {{"poly_sram.words_in", "count", "8-byte words written by programmed I/O, in all PEs"},
+       [](const Chip& c) { return Json(c.poly_sram.words_in); }},
+      {{"poly_sram.words_out", "count", "8-byte words read by programmed I/O, in all PEs"},
+       [](const Chip& c) { return Json(c.poly_sram.words_out); }},
+      {{"poly_sram.port_cycles", "cycles", "that programmed I/O took the ports, in all PEs"},
+       [](const Chip& c) { return Json(c.poly_sram.port_cycles); }},
+      {{"clear_connect.pio.bytes", "bytes", "payload of the PIO engine's packets"},
+       [](const Chip& c) { return Json(c.bus_pio.bytes); }},
+      {{"clear_connect.pio.packets", "count", "packets of the PIO engine"},
+       [](const Chip& c) { return Json(c.bus_pio.packets); }},
+      {{"clear_connect.pio.waiting_cycles", "cycles",
+        "that the PIO engine's packets waited for the port to the DDR"},
+       [](const Chip& c) { return Json(c.bus_pio.waiting_cycles); }},
+      {{"clear_connect.control.bytes", "bytes", "payload of the control unit's packets"},
+       [](const Chip& c) { return Json(c.bus_control.bytes); }},
+      {{"clear_connect.control.packets", "count", "packets of the control unit"},
+       [](const Chip& c) { return Json(c.bus_control.packets); }},
+      {{"clear_connect.control.waiting_cycles", "cycles",
+        "that the control unit's packets waited for the port to the DDR"},
+       [](const Chip& c) { return Json(c.bus_control.waiting_cycles); }},
+      {{"clear_connect.host.bytes", "bytes", "payload of the host link's packets"},
+       [](const Chip& c) { return Json(c.bus_host.bytes); }},
+      {{"clear_connect.host.packets", "count", "packets of the host link"},
+       [](const Chip& c) { return Json(c.bus_host.packets); }},
+      {{"clear_connect.host.waiting_cycles", "cycles",
+        "that the host link's packets waited for the port to the DDR"},
+       [](const Chip& c) { return Json(c.bus_host.waiting_cycles); }},
+      {{"ddr.page_hits", "count", "accesses to an open page"},
+       [](const Chip& c) { return Json(c.ddr.page_hits); }},
+      {{"ddr.page_misses", "count", "accesses that opened their page first"},
+       [](const Chip& c) { return Json(c.ddr.page_misses); }},
+      {{"ddr.bytes_read", "bytes", "read by PIO engine, control unit and host"},
+       [](const Chip& c) { return Json(c.ddr.bytes_read); }},
+      {{"ddr.bytes_written", "bytes", "written by PIO engine, control unit and host"},
+       [](const Chip& c) { return Json(c.ddr.bytes_written); }},
+      {{"ddr.busy_cycles", "cycles", "in which the data bus transferred"},
+       [](const Chip& c) { return Json(c.ddr.busy_cycles); }},
+      {{"ddr.turn_rounds", "count", "changes of the data bus's direction"},
+       [](const Chip& c) { return Json(c.ddr.turn_rounds); }},
+      {{"ddr.refreshes", "count", "of all banks"}, [](const Chip& c) { return Json(c.ddr.refreshes); }},
+      {{"host_link.bytes_uploaded", "bytes", "from the host to mono memory"},
+       [](const Chip& c) { return Json(c.host_link.bytes_uploaded); }},
+      {{"host_link.bytes_downloaded", "bytes", "from mono memory to the host"},
+       [](const Chip& c) { return Json(c.host_link.bytes_downloaded); }},
+      {{"host_link.host_dmas", "count", "transfers of the host link"},
+       [](const Chip& c) { return Json(c.host_link.host_dmas); }},
+      {{"host_link.busy_cycles", "cycles", "in which the host link transferred"},
+       [](const Chip& c) { return Json(c.host_link.busy_cycles); }}};
+}
+
+Counters<Chip> energy_counters() {
+  return {{{"energy.joules", "J", "of chip and DDR, from the upload's first cycle to the download's last"},
+           [](const Chip& c) { return Json(energy_of(c).joules()); }},
+          {{"energy.chip_joules", "J", "of the chip alone, which the vendor's power figure is of", kDerived},
+           [](const Chip& c) { return Json(energy_of(c).chip_joules()); }},
+          {{"energy.ddr_joules", "J", "of the memory devices", kDerived},
+           [](const Chip& c) { return Json(energy_of(c).ddr_joules()); }},
+          {{"energy.watts", "W", "average of chip and DDR", kDerived},
+           [](const Chip& c) { return watts(c, energy_of(c).joules()); }},
+          {{"energy.chip_watts", "W", "average of the chip alone", kDerived},
+           [](const Chip& c) { return watts(c, energy_of(c).chip_joules()); }},
+          {{"energy.ddr_watts", "W", "average of the memory devices", kDerived},
+           [](const Chip& c) { return watts(c, energy_of(c).ddr_joules()); }},
+          {{"energy.joules_by_cause.*", "J",
+            "an instruction class in enabled PEs, or a part of the chip; the sum is energy.joules", kDerived},
+           joules_by_cause}};
+}
+
+Counters<Chip> roofline_counters() {
+  return {
+      {{"roofline.flops", "count", "floating-point operations in enabled PEs; a routine is one"},
+       [](const Chip& c) { return Json(roofline_of(c).flops()); }},
+      {{"roofline.flops_per_second", "flop/s", "floating-point operations of enabled PEs", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("pe_array").attained_per_second); }},
+      {{"roofline.peak_flops_per_second", "flop/s",
+        "PEs x clock x most operations of an instruction class a cycle", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("pe_array").peak_per_second); }},
+      {{"roofline.pio_bytes_per_second", "bytes/s", "moved by programmed I/O", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("pio").attained_per_second); }},
+      {{"roofline.peak_pio_bytes_per_second", "bytes/s", "what the engine moves at most", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("pio").peak_per_second); }},
+      {{"roofline.flops_per_pio_byte", "flop/byte",
+        "arithmetic intensity: operations for each byte moved by programmed I/O", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).intensity("pio")); }},
+      {{"roofline.clear_connect_bytes_per_second", "bytes/s", "through the network", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("clear_connect").attained_per_second); }},
+      {{"roofline.peak_clear_connect_bytes_per_second", "bytes/s", "of a node's link, both ways", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("clear_connect").peak_per_second); }},
+      {{"roofline.flops_per_clear_connect_byte", "flop/byte",
+        "arithmetic intensity: operations for each byte through the network", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).intensity("clear_connect")); }},
+      {{"roofline.ddr_bytes_per_second", "bytes/s", "through the DDR's data bus", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("ddr").attained_per_second); }},
+      {{"roofline.peak_ddr_bytes_per_second", "bytes/s", "of the data bus", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).roof("ddr").peak_per_second); }},
+      {{"roofline.flops_per_ddr_byte", "flop/byte",
+        "arithmetic intensity: operations for each byte through the DDR's data bus", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).intensity("ddr")); }},
+      {{"roofline.nearest_roof", "-", "of whose peak the run attained most", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).nearest().name); }},
+      {{"roofline.nearest_roof_share", "-", "attained of its peak", kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).nearest().share()); }},
+      {{"roofline.attainable_flops_per_second", "flop/s", "where the nearest roof would stop this program",
+        kDerived},
+       [](const Chip& c) { return Json(roofline_of(c).attainable_flops_per_second()); }}};
+}
+
+}  // namespace
+
+const Counters<Chip>& chip_counters() {
+  static const Counters<Chip> counters = [] {
+    Counters<Chip> all = unit_counters();
+    for (const Counters<Chip>& more : {energy_counters(), roofline_counters()})
+      all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }();
+  return counters;
+}
+
+const Counters<KernelOnArray>& kernel_counters() {
+  using Of = KernelOnArray;
+  static const Counters<Of> counters = {
+      {{"runs", "count", "runs of the kernel"}, [](const Of& of) { return Json(of.kernel.runs); }},
+      {{"cycles", "cycles", "of its code, without stolen ones"},
+       [](const Of& of) { return Json(of.kernel.cycles); }},
+      {{"simd_efficiency", "-", "enabled share of the issued lane-cycles", kDerived},
+       [](const Of& of) { return Json(of.kernel.simd_efficiency(of.num_pes)); }},
+      {{"sram_bytes", "bytes", "of poly SRAM read and written by enabled PEs"},
+       [](const Of& of) { return Json(sram_bytes(of.kernel.executed)); }},
+      {{"flops", "count", "floating-point operations in enabled PEs; a routine is one"},
+       [](const Of& of) { return Json(flops_of(of.kernel.executed)); }},
+      {{"exposed_wait_cycles", "cycles",
+        "that the control unit only waited for programmed I/O after the kernel before and before this one"},
+       [](const Of& of) { return Json(of.kernel.waited_before.total()); }},
+      {{"wait_load_cycles", "cycles", "of these, for loads"},
+       [](const Of& of) { return Json(of.kernel.waited_before.load); }},
+      {{"wait_save_cycles", "cycles", "of these, for saves"},
+       [](const Of& of) { return Json(of.kernel.waited_before.save); }},
+      {{"wait_pio_queue_cycles", "cycles", "of these, to queue a request"},
+       [](const Of& of) { return Json(of.kernel.waited_before.queue); }},
+      {{"issued.*", "count", "instructions by class; SRAM classes in 4-byte words"},
+       [](const Of& of) { return non_zero(of.kernel.issued); }},
+      {{"runs_by_enabled_pes.*", "count", "runs that began with so many PEs enabled"}, runs_by_enabled_pes}};
+  return counters;
+}
+
+Json to_json(const Chip& statistics) {
+  Json kernels = Json::array();
+  for (const model::KernelStatistics& kernel : statistics.kernels) {
+    Json json = {{"name", kernel.name}};
+    write_counters(kernel_counters(), KernelOnArray{kernel, statistics.config.chip.pes}, json);
+    kernels.push_back(std::move(json));
+  }
+  Json json;
+  write_counters(chip_counters(), statistics, json);
+  json["pe_array"]["kernels"] = std::move(kernels);
+  return json;
+}
+
+}  // namespace testbench

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/path_tracer/program/program.hpp"
+#include "model/pe_array/pe_array.hpp"
+
+namespace testbench {
+
+struct ChipStatistics;
+struct RenderResult;
+
+/// What counters count in. "-" is a ratio, "count" a number of what the name says.
+inline constexpr std::array<std::string_view, 11> kCounterUnits = {
+    "-", "count", "cycles", "s", "Hz", "bytes", "bytes/s", "flop/s", "flop/byte", "J", "W"};
+
+enum class CounterKind : std::uint8_t {
+  counted,  ///< by the chip, the firmware or the host
+  derived,  ///< from others and from the chip's parameters
+};
+
+/// One counter of a run. JSON, CSV and text take name, unit and meaning from here and from nowhere else.
+struct Counter {
+  std::string key;  ///< the path in the statistics file, joined by dots; "*" stands for any name
+  std::string unit;
+  std::string meaning;
+  CounterKind kind = CounterKind::counted;
+};
+
+/// A counter and where its value comes from. The value of a key that ends in ".*" is an object.
+template <class Source>
+struct CounterOf {
+  Counter counter;  ///< its key begins at the source
+  nlohmann::ordered_json (*read)(const Source&);
+};
+template <class Source>
+using Counters = std::vector<CounterOf<Source>>;
+
+/// A kernel and the width of the array that it ran on.
+struct KernelOnArray {
+  const model::KernelStatistics& kernel;
+  int num_pes;
+};
+
+const Counters<RenderResult>& run_counters();                 ///< keys begin at the file's root
+const Counters<path_tracer::RunCounts>& firmware_counters();  ///< "counts."
+const Counters<ChipStatistics>& chip_counters();              ///< "chip."
+const Counters<KernelOnArray>& kernel_counters();             ///< "chip.pe_array.kernels.*."
+
+/// Every declaration, with whole keys, in the order of the file.
+const std::vector<Counter>& all_counters();
+/// The declaration of a value in the statistics file; nullptr if it has none (what the run was asked to do).
+const Counter* find_counter(std::string_view key);
+
+/// Name, unit and meaning of every counter.
+std::string describe_counters();
+
+/// Puts the values where their keys say.
+template <class Source>
+void write_counters(const Counters<Source>& counters, const Source& source, nlohmann::ordered_json& json) {
+  for (const CounterOf<Source>& counter : counters) {
+    std::string path = counter.counter.key;
+    if (path.size() > 1 && path.substr(path.size() - 2) == ".*") path.resize(path.size() - 2);
+    for (char& c : path)
+      if (c == '.') c = '/';
+    json[nlohmann::ordered_json::json_pointer("/" + path)] = counter.read(source);
+  }
+}
+
+}  // namespace testbench

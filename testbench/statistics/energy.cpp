@@ -1,0 +1,101 @@
+#include "testbench/statistics/energy.hpp"
+
+namespace testbench {
+namespace {
+
+using cn::InstructionClass;
+
+constexpr double kPico = 1e-12;
+/// A PIO word at the SRAM's port is two of the PE's.
+constexpr double kPeWordsPerPioWord = 2;
+
+bool has_cause_of_its_own(InstructionClass c) {
+  return c == InstructionClass::sram || c == InstructionClass::sram_vector_load ||
+         c == InstructionClass::swazzle || c == InstructionClass::swazzle_vector4 ||
+         c == InstructionClass::mono;
+}
+
+class Causes {
+ public:
+  explicit Causes(const ChipStatistics& statistics)
+      : run_(statistics),
+        table_(statistics.config.energy),
+        seconds_(statistics.total_seconds()),
+        scale_(table_.chip_scale * kPico) {}
+
+  std::vector<Energy::Cause> all() {
+    add_instructions();
+    const double pio_words = double(run_.poly_sram.words_in + run_.poly_sram.words_out) * kPeWordsPerPioWord;
+    chip("poly_sram", executed(InstructionClass::sram) + executed(InstructionClass::sram_vector_load) +
+                          scale_ * pio_words * table_.picojoules[std::size_t(InstructionClass::sram)]);
+    chip("swazzle", executed(InstructionClass::swazzle) + executed(InstructionClass::swazzle_vector4));
+    chip("pe_clock", scale_ * table_.pe_clock_picojoules * run_.config.chip.pes * double(run_.total_cycles));
+    chip("control_unit", scale_ * table_.control_unit_picojoules * double(busy_cycles()));
+    chip("pio",
+         scale_ * table_.pio_picojoules_per_byte * double(run_.pio.bytes_to_poly + run_.pio.bytes_to_mono));
+    chip("clear_connect", scale_ * table_.clear_connect_picojoules * run_.config.clear_connect.hops_to_ddr *
+                              double(run_.bus_pio.bytes + run_.bus_control.bytes + run_.bus_host.bytes));
+    chip("leakage", (table_.leakage_watts + table_.leakage_watts_per_pe * run_.config.chip.pes) * seconds_);
+    add_ddr();
+    return std::move(causes_);
+  }
+
+ private:
+  void chip(const std::string& name, double joules) { causes_.push_back({name, joules, false}); }
+  void ddr(const std::string& name, double joules) { causes_.push_back({name, joules, true}); }
+
+  /// Of enabled PEs. The code quality factor stands for that many more instructions of the same mix.
+  double executed(InstructionClass c) const {
+    return scale_ * run_.config.poly.code_quality_factor * table_.picojoules[std::size_t(c)] *
+           double(run_.all_kernels.executed[c]);
+  }
+
+  void add_instructions() {
+    for (std::size_t i = 0; i < cn::kInstructionClasses; ++i) {
+      const auto c = static_cast<InstructionClass>(i);
+      if (!has_cause_of_its_own(c) && run_.all_kernels.executed[c] != 0)
+        chip(std::string(cn::kInstructionClassNames[i]), executed(c));
+    }
+  }
+
+  model::Cycles busy_cycles() const {
+    return run_.control.total() - run_.control.exposed_pio() - run_.control[model::CycleCause::wait_host];
+  }
+
+  void add_ddr() {
+    ddr("ddr_activate", kPico * table_.ddr_activate_picojoules * double(run_.ddr.page_misses));
+    ddr("ddr_read", kPico * table_.ddr_read_picojoules * double(run_.ddr.bytes_read));
+    ddr("ddr_write", kPico * table_.ddr_write_picojoules * double(run_.ddr.bytes_written));
+    ddr("ddr_refresh", kPico * table_.ddr_refresh_picojoules * double(run_.ddr.refreshes));
+    ddr("ddr_background", table_.ddr_background_watts * seconds_);
+  }
+
+  const ChipStatistics& run_;
+  const model::ChipConfig::Energy& table_;
+  double seconds_;
+  double scale_;
+  std::vector<Energy::Cause> causes_;
+};
+
+double sum(const std::vector<Energy::Cause>& causes, bool in_ddr) {
+  double joules = 0;
+  for (const Energy::Cause& cause : causes)
+    if (cause.in_ddr == in_ddr) joules += cause.joules;
+  return joules;
+}
+
+}  // namespace
+
+double Energy::chip_joules() const {
+  return sum(causes, false);
+}
+
+double Energy::ddr_joules() const {
+  return sum(causes, true);
+}
+
+Energy energy_of(const ChipStatistics& statistics) {
+  return {Causes(statistics).all(), statistics.total_seconds()};
+}
+
+}  // namespace testbench

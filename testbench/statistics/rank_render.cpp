@@ -1,0 +1,90 @@
+#include "testbench/statistics/rank_render.hpp"
+
+#include <algorithm>
+
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A rank's part as it travels: a line of JSON, then the film's bytes.
+std::string render_part(const Scene& scene, RenderRequest request, const path_tracer::Work& work,
+                        const RenderProgress& progress) {
+  if (work.samples == 0) return Json::object().dump() + "\n";
+  request.options.work = work;
+  try {
+    const RenderResult result = request.native ? render_natively(scene, request.options, progress)
+                                               : render_on_chip(scene, request.options, progress);
+    return Json{{"statistics", render_statistics(request, result)}}.dump() + "\n" + result.film.bytes();
+  } catch (const InputError& error) {
+    return Json{{"error", error.what()}, {"input", true}}.dump() + "\n";
+  } catch (const std::exception& error) {
+    return Json{{"error", error.what()}, {"input", false}}.dump() + "\n";
+  }
+}
+
+void add_part(const Scene& scene, const std::string& message, RankRender& render, Json& parts) {
+  const std::size_t end = message.find('\n');
+  Json json = Json::parse(message.substr(0, end));
+  if (!json.contains("statistics")) return;
+  Json& statistics = json["statistics"];
+  render.film.merge(Film::from_bytes(scene.film, film_scale(scene), message.substr(end + 1)));
+  render.segments += statistics["segments"].get<std::uint64_t>();
+  render.cpu_seconds += statistics["host"]["cpu_seconds"].get<double>();
+  if (statistics["simulated_seconds"].is_number())
+    render.simulated_seconds =
+        std::max(render.simulated_seconds.value_or(0), statistics["simulated_seconds"].get<double>());
+  parts.push_back(std::move(statistics));
+}
+
+/// Of the first rank that failed, whatever it was that did.
+void throw_error(const std::vector<std::string>& messages) {
+  for (std::size_t rank = 0; rank < messages.size(); ++rank) {
+    const Json json = Json::parse(messages[rank].substr(0, messages[rank].find('\n')));
+    if (!json.contains("error")) continue;
+    const std::string text =
+        (rank == 0 ? "" : "rank " + std::to_string(rank) + ": ") + json["error"].get<std::string>();
+    if (json["input"]) throw InputError(text);
+    throw RunError(text);
+  }
+}
+
+}  // namespace
+
+path_tracer::Work share_of(const path_tracer::Work& work, int rank, int ranks) {
+  const auto before = [&](int r) { return static_cast<int>(std::int64_t{work.samples} * r / ranks); };
+  return {work.first_sample + before(rank), before(rank + 1) - before(rank)};
+}
+
+std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, const RenderRequest& request,
+                                          const RenderProgress& progress) {
+  const path_tracer::Work work = share_of(request.options.work, ranks.rank(), ranks.size());
+  const std::string own = render_part(scene, request, work, progress);
+  if (!ranks.is_first()) {
+    ranks.send(0, own);
+    return std::nullopt;
+  }
+  std::vector<std::string> messages(std::size_t(ranks.size()));
+  messages[0] = own;
+  for (int others = 1; others < ranks.size(); ++others) {
+    Ranks::Message message = ranks.receive();
+    messages[std::size_t(message.from)] = std::move(message.bytes);
+  }
+  throw_error(messages);
+  RankRender render{Film(scene.film, film_scale(scene)), 0, 0, std::nullopt, {}};
+  Json parts = Json::array();
+  for (const std::string& message : messages) add_part(scene, message, render, parts);
+  render.statistics = {
+      {"format", "csx600-rank-statistics-1"},
+      {"scene", request.scene},
+      {"ranks", ranks.size()},
+      {"simulated_seconds", render.simulated_seconds ? Json(*render.simulated_seconds) : Json()},
+      {"segments", render.segments},
+      {"image_sha256", render.film.sha256()},
+      {"parts", std::move(parts)}};
+  return render;
+}
+
+}  // namespace testbench

@@ -1,0 +1,169 @@
+#include "testbench/statistics/render_report.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "model/config/chip_file.hpp"
+#include "testbench/paper/paper.hpp"
+#include "testbench/run/program_names.hpp"
+#include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/energy.hpp"
+#include "testbench/statistics/roofline.hpp"
+#include "testbench/statistics/statistics_file.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* buffering_name(const path_tracer::ProgramConfig& program) {
+  if (program.buffer_loads) return program.buffer_saves ? "both" : "loads";
+  return program.buffer_saves ? "saves" : "none";
+}
+
+Json program_json(const RenderOptions& options) {
+  const path_tracer::ProgramConfig& program = options.program;
+  const path_tracer::TreeShape& tree = program.tree;
+  return {{"program", program_name(program.program)},
+          {"n", program.n},
+          {"buffer", buffering_name(program)},
+          {"bin_blocks", program.bin_blocks},
+          {"slot_vertices", program.slot_vertices},
+          {"sampler", sampler_name(program.sampler)},
+          {"light_sampling", light_sampling_name(program.light_sampling)},
+          {"roulette_start", program.roulette_start},
+          {"max_survival", program.max_survival},
+          {"seed", program.seed},
+          {"pixel_stride", program.pixel_stride},
+          {"traversal", traversal_name(program.traversal)},
+          {"node_format", node_format_name(tree.layout.format)},
+          {"node_width", tree.layout.width},
+          {"leaf_triangles", tree.leaf_triangles},
+          {"treelet_nodes", tree.treelet_nodes},
+          {"resident_nodes", tree.resident_nodes},
+          {"stack_entries", tree.stack_entries},
+          {"visits", tree.visits},
+          {"samples", options.work.samples}};
+}
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), format, value);
+  return buffer;
+}
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+void add_energy_row(const RenderResult& result, Rows& rows) {
+  const Energy energy = energy_of(*result.chip);
+  const std::uint64_t rays = result.counts.segments + result.counts.shadow_rays;
+  rows.emplace_back("energy", text("%.4g J", energy.joules()) +
+                                  text(" (%.1f W chip", energy.chip_joules() / energy.seconds) +
+                                  text(", %.1f W DDR)", energy.ddr_joules() / energy.seconds) +
+                                  text(", %.0f rays/J", double(rays) / energy.joules()));
+}
+
+void add_roofline_row(const ChipStatistics& chip, Rows& rows) {
+  const Roofline roofline = roofline_of(chip);
+  std::string row;
+  for (const Roof& roof : roofline.roofs)
+    row += text("%.2f", roof.attained_per_second * 1e-9) + text(" of %.1f G", roof.peak_per_second * 1e-9) +
+           (roof.name == "pe_array" ? "flop/s" : "B/s " + std::string(roof.name)) + ", ";
+  rows.emplace_back("roofline", row + "nearest roof " + std::string(roofline.nearest().name) +
+                                    text(" at %.1f %%", 100 * roofline.nearest().share()));
+}
+
+void add_chip_rows(const RenderResult& result, Rows& rows) {
+  const ChipStatistics& chip = *result.chip;
+  rows.emplace_back("simulated time",
+                    text("%.6f s", chip.seconds()) + text(" (%.0f cycles)", double(chip.firmware_cycles)));
+  rows.emplace_back("simulated segments/s", text("%.0f", double(result.counts.segments) / chip.seconds()));
+  rows.emplace_back("PE utilisation", text("%.2f %%", 100 * chip.pe_utilisation()));
+  rows.emplace_back("SIMD efficiency", text("%.2f %%", 100 * chip.simd_efficiency()));
+  rows.emplace_back("exposed DMA", text("%.2f %% of the time", 100 * chip.exposed_pio_share()));
+  rows.emplace_back("DDR bandwidth", text("%.1f MB/s", chip.ddr_bytes_per_second() * 1e-6));
+  add_energy_row(result, rows);
+  add_roofline_row(chip, rows);
+}
+
+void add_host_rows(const RenderRequest& request, const RenderResult& result, Rows& rows) {
+  const double rate = double(result.counts.segments) / result.cpu_seconds;
+  const double silicon = silicon_segments_per_second(request.options.program.program);
+  rows.emplace_back("host time",
+                    text("%.2f s CPU", result.cpu_seconds) + text(", %.2f s wall", result.wall_seconds));
+  rows.emplace_back("host segments/s", text("%.0f", rate));
+  rows.emplace_back("faster than the silicon",
+                    text("%.1f times", rate / silicon) + text(" (paper: %.0f segments/s)", silicon));
+}
+
+void add_traversal_row(const RenderRequest& request, const path_tracer::RunCounts& counts, Rows& rows) {
+  const path_tracer::ProgramConfig& program = request.options.program;
+  std::string row = traversal_name(program.traversal);
+  if (program.uses_tree()) {
+    const double rays = double(counts.segments + counts.shadow_rays);
+    row += text(": %.2f leaves", double(counts.traversal.leaf_loads) / rays) +
+           text(", %.2f treelets loaded a ray", double(counts.traversal.treelet_loads) / rays);
+  }
+  if (!request.traversal_reason.empty()) row += " (" + request.traversal_reason + ")";
+  rows.emplace_back("traversal", row);
+}
+
+const char* timing_name(model::TimingStyle timing) {
+  return timing == model::TimingStyle::approximately_timed ? "at" : "lt";
+}
+
+}  // namespace
+
+Json render_statistics(const RenderRequest& request, const RenderResult& result) {
+  Json json;
+  json["format"] = kStatisticsFormat;
+  json["scene"] = request.scene;
+  json["width"] = result.film.size().width;
+  json["height"] = result.film.size().height;
+  json["firmware"] = program_json(request.options);
+  if (!request.traversal_reason.empty()) json["traversal_chosen_because"] = request.traversal_reason;
+  json["machine"] = request.native ? "native" : "chip";
+  json["timing"] = request.native ? "none" : timing_name(request.options.timing);
+  json["chip_preset"] = request.options.chip.preset;
+  json["chip_config"] = model::effective_toml(request.options.chip);
+  Json measured;
+  write_counters(run_counters(), result, measured);
+  const Json host = measured["host"];
+  measured.erase("host");
+  json.update(measured);
+  json["image_sha256"] = result.film.sha256();
+  json["counts"] = to_json(result.counts);
+  if (result.chip) json["chip"] = to_json(*result.chip);
+  json["host"] = host;
+  return json;
+}
+
+std::string render_table(const RenderRequest& request, const RenderResult& result) {
+  Rows rows;
+  const path_tracer::RunCounts& counts = result.counts;
+  rows.emplace_back("path segments", text("%.0f", double(counts.segments)) +
+                                         text(" of %.0f paths", double(counts.paths)) +
+                                         text(", %.0f shadow rays", double(counts.shadow_rays)));
+  add_traversal_row(request, counts, rows);
+  if (result.chip) add_chip_rows(result, rows);
+  add_host_rows(request, result, rows);
+  std::string table;
+  for (const auto& [label, value] : rows) {
+    char name[32];
+    std::snprintf(name, sizeof(name), "  %-24s ", label.c_str());
+    table += name + value + '\n';
+  }
+  return table;
+}
+
+std::map<std::string, std::string> render_provenance(const RenderRequest& request,
+                                                     const RenderResult& result) {
+  return {{"csx600.scene", request.scene},
+          {"csx600.firmware", program_json(request.options).dump()},
+          {"csx600.machine", request.native ? "native" : "chip " + request.options.chip.preset},
+          {"csx600.segments", std::to_string(result.counts.segments)},
+          {"csx600.image_sha256", result.film.sha256()}};
+}
+
+}  // namespace testbench

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "testbench/run/render.hpp"
+
+namespace testbench {
+
+/// What one render is called and was asked to do, for its outputs.
+struct RenderRequest {
+  std::string scene;
+  RenderOptions options;
+  bool native = false;
+  std::string traversal_reason =
+      {};  ///< why the host chose the way through the scene; empty when the user did
+};
+
+/// The statistics file. Everything but the section `host` is the same for the same inputs, byte for byte.
+nlohmann::ordered_json render_statistics(const RenderRequest& request, const RenderResult& result);
+
+/// The same as a small table for people.
+std::string render_table(const RenderRequest& request, const RenderResult& result);
+
+/// For the image's header: what made it.
+std::map<std::string, std::string> render_provenance(const RenderRequest& request,
+                                                     const RenderResult& result);
+
+}  // namespace testbench

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbench/statistics/statistics_file.hpp"
+
+namespace testbench {
+
+/// A value that two runs do not have in common.
+struct Difference {
+  std::string key;
+  std::optional<nlohmann::ordered_json> a;  ///< nothing when that run does not have the key
+  std::optional<nlohmann::ordered_json> b;
+
+  /// (b - a) / the larger of |a| and |b|; nothing unless both are numbers.
+  std::optional<double> relative() const;
+};
+
+inline const std::string& key_of(const Difference& difference) {
+  return difference.key;
+}
+
+struct Tolerance {
+  std::string glob;     ///< of keys, as the shell's: * ? [ ]
+  double relative = 0;  ///< numbers that differ by at most so much are equal
+};
+
+struct ComparisonRules {
+  std::vector<Tolerance> tolerances;  ///< the last that matches a key counts; without one it must be equal
+  std::vector<std::string> ignore;    ///< globs
+};
+
+struct Comparison {
+  std::vector<Difference> differences;  ///< in the order of the files
+  std::size_t compared = 0;             ///< keys of either, without the ignored ones
+};
+
+Comparison compare(const FlatStatistics& a, const FlatStatistics& b, const ComparisonRules& rules);
+
+/// A table by group: key, a, b, relative difference, unit.
+std::string difference_text(const std::vector<Difference>& differences);
+
+}  // namespace testbench

@@ -1,0 +1,175 @@
+#include "testbench/statistics/statistics_file.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+#include "testbench/statistics/counters.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json toml_value(const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return *text;
+  if (const auto number = node.value_exact<std::int64_t>()) return *number;
+  if (const auto number = node.value_exact<double>()) return *number;
+  if (const auto flag = node.value_exact<bool>()) return *flag;
+  return nullptr;
+}
+
+void flatten_toml(const std::string& prefix, const toml::table& table, FlatStatistics& flat) {
+  for (const auto& [name, node] : table) {
+    const std::string key = prefix + "." + std::string(name.str());
+    if (const toml::table* const inner = node.as_table()) {
+      flatten_toml(key, *inner, flat);
+    } else {
+      flat.emplace_back(key, toml_value(node));
+    }
+  }
+}
+
+void flatten_chip(const std::string& key, const std::string& text, FlatStatistics& flat) {
+  try {
+    flatten_toml(key, toml::parse(text), flat);
+  } catch (const toml::parse_error&) {
+    flat.emplace_back(key, text);
+  }
+}
+
+bool is_named(const Json& json) {
+  return json.is_object() && json.contains("name") && json["name"].is_string();
+}
+
+void flatten_into(const std::string& key, const Json& json, FlatStatistics& flat) {
+  const std::string prefix = key.empty() ? "" : key + ".";
+  if (json.is_object()) {
+    for (const auto& [name, value] : json.items()) flatten_into(prefix + name, value, flat);
+  } else if (json.is_array()) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      Json element = json[i];
+      const std::string name = is_named(element) ? element["name"].get<std::string>() : std::to_string(i);
+      if (is_named(element)) element.erase("name");
+      flatten_into(prefix + name, element, flat);
+    }
+  } else if (key == "chip_config" && json.is_string()) {
+    flatten_chip(key, json.get<std::string>(), flat);
+  } else {
+    flat.emplace_back(key, json);
+  }
+}
+
+bool has(const Json& json, std::string key) {
+  std::replace(key.begin(), key.end(), '.', '/');
+  return json.contains(Json::json_pointer("/" + key));
+}
+
+/// Throws InputError when a counter that every such run has is missing.
+void require_counters(const Json& json, const std::string& origin) {
+  for (const char* key : {"scene", "firmware", "machine", "chip_preset", "chip_config", "image_sha256"})
+    if (!has(json, key))
+      throw InputError(origin + ": " + key + ": missing; allowed is a whole statistics file");
+  const bool native = json["machine"] == "native";
+  for (const Counter& counter : all_counters()) {
+    const bool of_chip = counter.key.rfind("chip.", 0) == 0;
+    if (counter.key.find('*') != std::string::npos || (native && of_chip)) continue;
+    if (!has(json, counter.key))
+      throw InputError(origin + ": " + counter.key + ": missing; allowed is a whole statistics file");
+  }
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+FlatStatistics flatten(const Json& statistics) {
+  FlatStatistics flat;
+  flatten_into("", statistics, flat);
+  return flat;
+}
+
+Json read_statistics(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path))
+    throw InputError(path + ": cannot be read; allowed is a statistics file");
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return parse_statistics(text, path);
+}
+
+Json parse_statistics(const std::string& text, const std::string& origin) {
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded() || !json.is_object())
+    throw InputError(origin + ": not a whole JSON object; allowed is a statistics file");
+  const std::string format = has(json, "format") ? value_of(json["format"]) : "no format";
+  if (format != kStatisticsFormat)
+    throw InputError(origin + ": format: found '" + format + "', allowed is '" + kStatisticsFormat + "'");
+  require_counters(json, origin);
+  return json;
+}
+
+std::string value_of(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string unit_of(const std::string& key) {
+  const Counter* const counter = find_counter(key);
+  return counter == nullptr ? "" : counter->unit;
+}
+
+std::string group_of(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string::npos ? "run" : key.substr(0, dot);
+}
+
+std::string name_of(const std::string& key) {
+  return key.substr(key.rfind('.') + 1);
+}
+
+std::string statistics_text(const Json& statistics) {
+  const FlatStatistics flat = grouped(flatten(statistics));
+  std::size_t width = 0;
+  for (const auto& [key, value] : flat) width = std::max(width, name_of(key).size());
+  std::ostringstream out;
+  std::string group;
+  for (const auto& [key, value] : flat) {
+    if (group_of(key) != group) out << (group.empty() ? "" : "\n") << (group = group_of(key)) << '\n';
+    const std::string unit = unit_of(key);
+    out << "  " << std::left << std::setw(int(width) + 2) << name_of(key) << value_of(value)
+        << (unit == "-" || unit.empty() || unit == "count" ? "" : " " + unit) << '\n';
+  }
+  return out.str();
+}
+
+std::string statistics_csv(const Json& statistics) {
+  std::string csv = "key,unit,value,meaning\n";
+  for (const auto& [key, value] : flatten(statistics)) {
+    const Counter* const counter = find_counter(key);
+    csv += quoted(key) + ',' + (counter == nullptr ? "" : counter->unit) + ',' + quoted(value_of(value)) +
+           ',' + (counter == nullptr ? "" : quoted(counter->meaning)) + '\n';
+  }
+  return csv;
+}
+
+std::string statistics_json(const Json& statistics) {
+  return statistics.dump(2) + "\n";
+}
+
+std::string statistics_for_file(const std::string& path, const Json& statistics) {
+  const std::string suffix = std::filesystem::path(path).extension();
+  if (suffix == ".csv") return statistics_csv(statistics);
+  if (suffix == ".txt") return statistics_text(statistics);
+  return statistics_json(statistics);
+}
+
+}  // namespace testbench

@@ -1,0 +1,108 @@
+#include "testbench/system/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <system_error>
+
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string system_message(int error) {
+  return std::generic_category().message(error);
+}
+
+[[noreturn]] void fail_input(const fs::path& path, const std::string& found) {
+  throw InputError(path.string() + ": output file: found " + found +
+                   "; allowed: a new or regular file in an existing directory that can be written to");
+}
+
+/// Creates an empty file beside `path` that nothing else uses. Its name shows where it came from, should it
+/// survive a kill: .<name>.<process>.<number>.tmp
+fs::path create_temporary(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (!path.has_filename()) fail_input(path, "no file name");
+  if (fs::is_directory(status)) fail_input(path, "a directory");
+  if (fs::exists(status) && !fs::is_regular_file(status)) fail_input(path, "a device, pipe or socket");
+  for (int number = 0;; ++number) {
+    fs::path temporary =
+        path.parent_path() / ("." + path.filename().string() + "." + std::to_string(getpid()) + "." +
+                              std::to_string(number) + ".tmp");
+    const int descriptor = open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      close(descriptor);
+      return temporary;
+    }
+    if (errno != EEXIST) fail_input(path, "that it cannot be created (" + system_message(errno) + ")");
+  }
+}
+
+void write_all(int descriptor, std::string_view bytes, const fs::path& target) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw RunError(target.string() + ": cannot be written: " + system_message(errno));
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void write_bytes(const fs::path& temporary, std::string_view bytes, const fs::path& target) {
+  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) throw RunError(target.string() + ": cannot be written: " + system_message(errno));
+  try {
+    write_all(descriptor, bytes, target);
+  } catch (...) {
+    close(descriptor);
+    throw;
+  }
+  if (close(descriptor) != 0)
+    throw RunError(target.string() + ": cannot be written: " + system_message(errno));
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile(const fs::path& target) : path_(create_temporary(target)) {}
+
+TemporaryFile::~TemporaryFile() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove(path_, ignored);
+}
+
+void TemporaryFile::rename_to(const fs::path& target) {
+  std::error_code error;
+  fs::rename(path_, target, error);
+  if (error) throw RunError(target.string() + ": cannot be replaced: " + error.message());
+  path_.clear();
+}
+
+void write_atomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
+  TemporaryFile temporary(path);
+  try {
+    write(temporary.path());
+  } catch (const InputError&) {
+    throw;
+  } catch (const RunError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw RunError(path.string() + ": cannot be written: " + error.what());
+  }
+  temporary.rename_to(path);
+}
+
+void write_bytes_atomically(const fs::path& path, std::string_view bytes) {
+  write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, bytes, path); });
+}
+
+void require_writable(const fs::path& path) {
+  const TemporaryFile probe(path);
+}
+
+}  // namespace testbench

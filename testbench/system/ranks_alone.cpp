@@ -1,0 +1,32 @@
+// Where MPI is not installed.
+
+#include <cstdlib>
+
+#include "testbench/system/error.hpp"
+#include "testbench/system/ranks.hpp"
+
+namespace testbench {
+
+Ranks::Ranks() {
+  if (launched_processes() > 1)
+    throw InputError("mpirun: found " + std::to_string(launched_processes()) +
+                     " processes; allowed: one, since this csx600 was built without MPI");
+}
+
+Ranks::~Ranks() = default;
+
+void Ranks::send(int, const std::string&) {}
+
+Ranks::Message Ranks::receive() {
+  throw RunError("a message is waited for, but there is one rank");
+}
+
+std::optional<Ranks::Message> Ranks::try_receive() {
+  return std::nullopt;
+}
+
+void Ranks::abort(int exit_code) {
+  std::_Exit(exit_code);
+}
+
+}  // namespace testbench

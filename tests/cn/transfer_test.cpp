@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "firmware/cn/chip/transfer.hpp"
+#include "tests/support/poly_words.hpp"
+
+namespace {
+
+using cn::Direction;
+using cn::MonoAddress;
+using cn::MonoPlaces;
+using test_support::poly_words;
+
+constexpr int kPes = 24;
+constexpr int kPolyBytes = 512;
+constexpr int kOffsetBytes = 16;
+constexpr std::size_t kMonoBytes = 1 << 14;
+constexpr MonoAddress kNowhere = ~MonoAddress{7};  // of a disabled PE
+
+/// Moves on a copy of both memories, PE by PE and word by word, and compares all of both with what move_data
+/// did.
+class CnTransfer : public testing::Test {
+ protected:
+  CnTransfer() : poly(kPes, kPolyBytes), mono(kMonoBytes) {
+    for (int i = 0; i < kPolyBytes / 8 * kPes; ++i) poly.words()[i] = random();
+    for (std::uint8_t& byte : mono) byte = static_cast<std::uint8_t>(random());
+  }
+
+  void expect_move(Direction direction, int words, const MonoPlaces& places, const cn::LaneMask& enabled) {
+    std::vector<std::uint64_t> expected_poly = poly_words(poly, kPolyBytes);
+    std::vector<std::uint8_t> expected_mono = mono;
+    for (int pe = 0; pe < kPes; ++pe) {
+      if (!enabled[pe]) continue;
+      for (int w = 0; w < words; ++w) {
+        std::uint64_t* const word = &expected_poly[std::size_t((kOffsetBytes / 8 + w) * kPes + pe)];
+        std::uint8_t* const place = &expected_mono[places[pe] + std::uint64_t(w) * 8];
+        std::memcpy(direction == Direction::mono_to_poly ? static_cast<void*>(word) : place,
+                    direction == Direction::mono_to_poly ? static_cast<void*>(place) : word, 8);
+      }
+    }
+    cn::move_data({direction, {kOffsetBytes, words * 8}, places, enabled, {}}, poly, mono.data());
+    ASSERT_EQ(poly_words(poly, kPolyBytes), expected_poly) << words;
+    ASSERT_EQ(mono, expected_mono) << words;
+  }
+
+  /// Full, empty and partly enabled strips.
+  cn::LaneMask some_pes() {
+    cn::LaneMask pes;
+    for (int strip = 0; strip < kPes / cn::kStripLanes; ++strip)
+      pes.set_strip_bits(strip, random() % 4 == 0 ? 0xff : random() & random() & 0xff);
+    return pes;
+  }
+
+  std::mt19937_64 random{3};
+  cn::PolyMemory poly;
+  std::vector<std::uint8_t> mono;
+};
+
+TEST_F(CnTransfer, ArraysOfEveryLengthMoveWhole) {
+  for (int words = 0; words <= 33; ++words)
+    for (int round = 0; round < 8; ++round)
+      for (const Direction direction : {Direction::mono_to_poly, Direction::poly_to_mono}) {
+        const std::uint64_t stride = std::uint64_t(words) * 8 + random() % 3 * 8;
+        expect_move(direction, words, MonoPlaces::array(random() % 64 * 8, stride),
+                    round == 0 ? cn::LaneMask::first(kPes) : some_pes());
+      }
+}
+
+TEST_F(CnTransfer, GathersOfEveryLengthMoveWholeAndDisabledPesMayPointAnywhere) {
+  for (int words = 1; words <= 33; ++words)
+    for (int round = 0; round < 8; ++round)
+      for (const Direction direction : {Direction::mono_to_poly, Direction::poly_to_mono}) {
+        const cn::LaneMask enabled = some_pes();
+        std::vector<MonoAddress> addresses(kPes, kNowhere);
+        for (int pe = 0; pe < kPes; ++pe)
+          if (enabled[pe])
+            addresses[std::size_t(pe)] = std::uint64_t(pe * 5 % kPes) * 40 * 8 + random() % 6 * 8;
+        expect_move(direction, words, MonoPlaces::each(addresses.data(), 64), enabled);
+      }
+}
+
+TEST_F(CnTransfer, OfPesThatSaveToTheSameWordTheHighestIsKept) {
+  for (int words = 1; words <= 20; ++words)
+    for (int round = 0; round < 20; ++round) {
+      std::vector<MonoAddress> addresses;
+      for (int pe = 0; pe < kPes; ++pe) addresses.push_back(random() % 40 * 8);
+      expect_move(Direction::poly_to_mono, words, MonoPlaces::each(addresses.data(), 8),
+                  round == 0 ? cn::LaneMask::first(kPes) : some_pes());
+      expect_move(Direction::poly_to_mono, words, MonoPlaces::array(0, random() % 3 * 8), some_pes());
+    }
+}
+
+}  // namespace

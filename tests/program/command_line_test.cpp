@@ -1,0 +1,240 @@
+// The program as users meet it: what it says, what it leaves and how it ends. Bad input:
+// command_line_errors_test.cpp.
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "model/config/chip_parameters.hpp"
+#include "tests/support/command_line.hpp"
+
+namespace {
+
+using nlohmann::json;
+using test_support::CommandResult;
+using Files = std::vector<std::string>;
+
+const std::string kCornellBox = std::string(CSX600_SCENES_DIR) + "/cornell_box";
+
+class CommandLine : public test_support::CommandLineFixture {
+ protected:
+  /// Renders 8 x 6 pixels of the Cornell box.
+  CommandResult render(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"render", kCornellBox, "--size", "8x6", "--samples", "2"});
+    return run(arguments);
+  }
+  json statistics(const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = {"--stats", "statistics.json"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const CommandResult result = render(all);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return json::parse(read("statistics.json"));
+  }
+};
+
+TEST_F(CommandLine, RenderWritesEveryOutputAndNothingElse) {
+  const CommandResult result = render({"--exr", "a.exr", "--png", "a.png", "--stats", "a.json", "--waves",
+                                       "a.vcd", "--waves-window", "100000:200000"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.error, "");
+  for (const char* line : {"simulated time", "segments/s", "PE utilisation", "SIMD efficiency", "exposed DMA",
+                           "DDR bandwidth", "host time", "faster than the silicon"})
+    EXPECT_NE(result.out.find(line), std::string::npos) << line << " in " << result.out;
+  std::set<std::string> names;
+  for (const std::string& name : files()) {
+    names.insert(name);
+    EXPECT_EQ(name.rfind("a.", 0), 0u) << name;
+    EXPECT_EQ(name.find("tmp"), std::string::npos) << name;
+    EXPECT_EQ(name.find("partial"), std::string::npos) << name;
+    EXPECT_FALSE(read(name).empty()) << name;
+  }
+  for (const char* name : {"a.exr", "a.png", "a.json", "a.vcd", "a.gtkw"})
+    EXPECT_EQ(names.count(name), 1u) << name;
+  EXPECT_EQ(read("a.exr").substr(0, 4), "\x76\x2f\x31\x01");
+  EXPECT_EQ(read("a.png").substr(1, 3), "PNG");
+}
+
+TEST_F(CommandLine, StatisticsHaveWhatEveryReaderNeeds) {
+  const json chip = statistics({});
+  EXPECT_GT(chip.at("simulated_seconds").get<double>(), 0.0);
+  EXPECT_GT(chip.at("simulated_cycles").get<std::uint64_t>(), 0u);
+  EXPECT_GE(chip.at("segments").get<std::uint64_t>(), 96u);
+  EXPECT_GT(chip.at("rays").get<std::uint64_t>(), chip.at("segments").get<std::uint64_t>());
+  EXPECT_EQ(chip.at("image_sha256").get<std::string>().size(), 64u);
+  EXPECT_GT(chip.at("host").at("cpu_seconds").get<double>(), 0.0);
+  EXPECT_GT(chip.at("host").at("wall_seconds").get<double>(), 0.0);
+  EXPECT_GT(chip.at("host").at("peak_bytes").get<std::uint64_t>(), 1000000u);
+  const double clock_hz = chip.at("chip").at("clock_hz");
+  EXPECT_DOUBLE_EQ(chip.at("simulated_seconds").get<double>(),
+                   chip.at("simulated_cycles").get<double>() / clock_hz);
+  std::uint64_t cycles = 0;
+  for (const auto& [cause, of_cause] : chip.at("chip").at("control_unit").at("cycles_by_cause").items())
+    cycles += of_cause.get<std::uint64_t>();
+  EXPECT_EQ(cycles, chip.at("simulated_cycles").get<std::uint64_t>());
+}
+
+TEST_F(CommandLine, NativeRunHasTheSameImageAndNoTime) {
+  const json chip = statistics({});
+  const json native = statistics({"--native"});
+  EXPECT_EQ(native.at("image_sha256"), chip.at("image_sha256"));
+  EXPECT_EQ(native.at("segments"), chip.at("segments"));
+  EXPECT_EQ(native.at("rays"), chip.at("rays"));
+  EXPECT_TRUE(native.at("simulated_seconds").is_null());
+  EXPECT_TRUE(native.at("simulated_cycles").is_null());
+  EXPECT_EQ(native.count("chip"), 0u);
+}
+
+TEST_F(CommandLine, StatisticsOfTwoRunsDifferInTheHostOnly) {
+  json first = statistics({"--n", "2"});
+  json second = statistics({"--n", "2"});
+  EXPECT_EQ(first.erase("host"), 1u);
+  second.erase("host");
+  EXPECT_EQ(first.dump(), second.dump());
+}
+
+TEST_F(CommandLine, CheckingHazardsChangesNothingButTheHostsTime) {
+  json plain = statistics({"--n", "3"});
+  json checked = statistics({"--n", "3", "--check-hazards"});
+  plain.erase("host"), checked.erase("host");
+  EXPECT_EQ(checked, plain);
+  EXPECT_EQ(statistics({"--native", "--check-hazards"})["image_sha256"], plain["image_sha256"]);
+}
+
+TEST_F(CommandLine, OptionsReachTheFirmwareAndTheChip) {
+  const json plain = statistics({});
+  const json other = statistics({"--n", "3", "--buffer", "loads", "--program", "segments", "--seed", "7",
+                                 "--bin-blocks", "4", "--slot-vertices", "8", "--roulette-start", "2",
+                                 "--chip", "csx600_250mhz", "--set", "pio.setup_cycles=777"});
+  const json expected = {
+      {"program", "segments"}, {"n", 3},    {"buffer", "loads"}, {"bin_blocks", 4}, {"slot_vertices", 8},
+      {"roulette_start", 2},   {"seed", 7}, {"samples", 2}};
+  for (const auto& [key, value] : expected.items()) {
+    EXPECT_EQ(other.at("firmware").at(key), value) << key;
+    if (key != "samples") {
+      EXPECT_NE(plain.at("firmware").at(key), value) << key;
+    }
+  }
+  EXPECT_EQ(other.at("chip_preset"), "csx600_250mhz");
+  EXPECT_EQ(other.at("chip").at("clock_hz").get<double>(), 250e6);
+  EXPECT_NE(other.at("chip_config").dump().find("777"), std::string::npos);
+  EXPECT_NE(other.at("image_sha256"), plain.at("image_sha256"));
+}
+
+TEST_F(CommandLine, OutputReplacesAnOlderFile) {
+  write("old.png", "old");
+  EXPECT_EQ(render({"--native", "--png", "old.png"}).exit_code, 0);
+  EXPECT_EQ(read("old.png").substr(1, 3), "PNG");
+  EXPECT_EQ(files(), Files{"old.png"});
+}
+
+TEST_F(CommandLine, SceneBesideItsMeshRenders) {
+  const test_support::SceneFiles scene;
+  write("scene/scene.toml", scene.toml);
+  write("scene/mesh.obj", scene.obj);
+  write("scene/mesh.mtl", scene.mtl);
+  for (const char* path : {"scene", "scene/scene.toml"}) {
+    const CommandResult result = run({"render", path, "--samples", "1"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.out.find("8 x 6"), std::string::npos) << result.out;
+  }
+}
+
+TEST_F(CommandLine, TrianglesWithoutAreaAreLeftOutWithANote) {
+  const test_support::SceneFiles scene;
+  write("scene.toml", scene.toml);
+  write("mesh.obj", scene.obj + "f 1 1 2\n");
+  write("mesh.mtl", scene.mtl);
+  const CommandResult result = run({"render", "scene.toml", "--samples", "1", "--native"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.error, "note: scene.toml: 1 triangles without area were left out\n");
+}
+
+/// By what Linux says of the process; then a little longer, into the run.
+void wait_until_interrupts_are_caught(pid_t child) {
+  constexpr unsigned long kInterrupt = 1ul << (SIGINT - 1);
+  unsigned long caught = 0;
+  for (int attempt = 0; (caught & kInterrupt) == 0; ++attempt) {
+    ASSERT_LT(attempt, 2000) << "it has ended";
+    std::ifstream status("/proc/" + std::to_string(child) + "/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.rfind("SigCgt:", 0) == 0) caught = std::stoul(line.substr(7), nullptr, 16);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+TEST_F(CommandLine, InterruptEndsARunCleanly) {
+  for (const std::vector<std::string>& how : {Files{}, Files{"--native"}, Files{"--waves", "a.vcd"}}) {
+    Files arguments = {"render", kCornellBox, "--samples", "1000000", "--exr",
+                       "a.exr",  "--png",     "a.png",     "--stats", "a.json"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    const pid_t child = start(arguments);
+    wait_until_interrupts_are_caught(child);
+    ASSERT_EQ(kill(child, SIGINT), 0);
+    const CommandResult result = finish(child);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.error, "csx600: interrupted; nothing was written\n");
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(files(), Files{});
+  }
+}
+
+TEST_F(CommandLine, ParamsListsEveryParameter) {
+  const CommandResult result = run({"params", "--json", "params.json"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.error, "");
+  const json list = json::parse(read("params.json"));
+  std::set<std::string> in_json;
+  for (const json& parameter : list) {
+    for (const char* member : {"key", "value", "unit", "confidence", "meaning"})
+      EXPECT_EQ(parameter.count(member), 1u) << parameter;
+    in_json.insert(parameter.at("key").get<std::string>());
+  }
+  EXPECT_GE(in_json.size(), 40u);
+  EXPECT_EQ(in_json.size(), model::parameter_table().size());
+  for (const model::ParameterInfo& parameter : model::parameter_table()) {
+    EXPECT_EQ(in_json.count(std::string(parameter.key)), 1u) << parameter.key;
+    EXPECT_NE(result.out.find(std::string(parameter.key)), std::string::npos) << parameter.key;
+  }
+}
+
+TEST_F(CommandLine, ParamsShowWhatWasSet) {
+  const CommandResult result = run({"params", "--set", "pio.setup_cycles=4321", "--json", "params.json"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.out.find("4321"), std::string::npos);
+  EXPECT_NE(read("params.json").find("4321"), std::string::npos);
+}
+
+TEST_F(CommandLine, ReproduceComparesEveryCell) {
+  const test_support::SceneFiles scene;
+  write("scene.toml", scene.toml);
+  write("mesh.obj", scene.obj);
+  write("mesh.mtl", scene.mtl);
+  const CommandResult result = run({"reproduce", "scene.toml", "--samples", "1", "--json", "tables.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(result.error, "");
+  const json tables = json::parse(read("tables.json"));
+  ASSERT_EQ(tables.at("cells").size(), 24u);
+  for (const json& cell : tables.at("cells")) {
+    EXPECT_GT(cell.at("model_seconds").get<double>(), 0.0);
+    EXPECT_GT(cell.at("paper_seconds").get<double>(), 5.0);
+  }
+  for (const char* part : {"Table 1", "Table 2", "n = 3", "loads", "7.63", "13.28"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+}
+
+TEST_F(CommandLine, HelpIsNotAnError) {
+  for (const Files& arguments : {Files{"--help"}, Files{"render", "--help"}}) {
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.error, "");
+    EXPECT_NE(result.out.find("render"), std::string::npos);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,155 @@
+#include "testbench/film/error_curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "testbench/film/light_pixels.hpp"
+
+namespace {
+
+using testbench::ExrFilm;
+using testbench::Film;
+using testbench::FilmSize;
+using testbench::image_error;
+using testbench::ImageError;
+using testbench::Scene;
+
+/// A film of one sample a pixel.
+Film film_of(FilmSize size, const std::vector<double>& rgb) {
+  Film film(size, 1.0);
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    const std::size_t i = 3 * std::size_t(pixel);
+    film.add(pixel, {rgb[i], rgb[i + 1], rgb[i + 2]});
+  }
+  return film;
+}
+
+ExrFilm reference_of(FilmSize size, std::vector<float> rgb, float variance) {
+  ExrFilm reference;
+  reference.width = size.width;
+  reference.height = size.height;
+  reference.variance.assign(rgb.size(), variance);
+  reference.rgb = std::move(rgb);
+  return reference;
+}
+
+TEST(ErrorCurve, ErrorOfKnownValues) {
+  const Film film = film_of({2, 1}, {1, 2, 3, 9, 9, 9});
+  const ExrFilm reference = reference_of({2, 1}, {1, 1, 1, 0, 0, 0}, 0);
+  const ImageError error = image_error(film, reference, {true, false});
+  EXPECT_DOUBLE_EQ(error.mse, (0 + 1 + 4) / 3.0);
+  EXPECT_DOUBLE_EQ(error.relative_mse, (1 + 4) / 1.01 / 3.0);
+  EXPECT_DOUBLE_EQ(error.mean_bias[0], 0);
+  EXPECT_DOUBLE_EQ(error.mean_bias[1], 1);
+  EXPECT_DOUBLE_EQ(error.mean_bias[2], 2);
+}
+
+TEST(ErrorCurve, TheReferencesVarianceIsSubtracted) {
+  const Film film = film_of({1, 1}, {1, 2, 3});
+  const ImageError error = image_error(film, reference_of({1, 1}, {1, 1, 1}, 0.25), {true});
+  EXPECT_DOUBLE_EQ(error.mse, 5 / 3.0 - 0.25);
+}
+
+/// A noisy reference of few samples against noisy films: what comes out is the films' own variance.
+TEST(ErrorCurve, NoiseOfTheReferenceDoesNotShow) {
+  const FilmSize size{64, 64};
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal(0.0, 0.1);
+  const auto noisy = [&](int samples) {
+    Film film(size, 16.0);
+    for (int pixel = 0; pixel < film.pixel_count(); ++pixel)
+      for (int i = 0; i < samples; ++i)
+        film.add(pixel, {5 + normal(random), 6 + normal(random), 7 + normal(random)});
+    return film;
+  };
+  const Film truth = noisy(16);
+  ExrFilm reference = reference_of(size, {}, 0);
+  for (int pixel = 0; pixel < truth.pixel_count(); ++pixel) {
+    for (int channel = 0; channel < 3; ++channel) {
+      reference.rgb.push_back(float(truth.mean(pixel)[channel]));
+      reference.variance.push_back(float(truth.variance_of_mean(pixel)[channel]));
+    }
+  }
+  const std::vector<bool> all(std::size_t(truth.pixel_count()), true);
+  std::vector<double> samples;
+  std::vector<double> errors;
+  for (const int count : {1, 4, 16, 64}) {
+    const double expected = 0.01 / count;
+    const double found = image_error(noisy(count), reference, all).mse;
+    // 12,288 values; the squared difference scatters by sqrt(2) of its mean, which holds the reference's too.
+    EXPECT_NEAR(found, expected, 4.5 * std::sqrt(2.0 / 12288) * (expected + 0.01 / 16)) << count;
+    samples.push_back(count);
+    errors.push_back(std::sqrt(found));
+  }
+  EXPECT_NEAR(testbench::log_log_slope(samples, errors), -0.5, 0.02);
+}
+
+TEST(ErrorCurve, SlopesOfPowersAreTheirExponents) {
+  const std::vector<double> x{1, 2, 4, 8, 16};
+  for (const double exponent : {-1.0, -0.5, 0.0, 2.0}) {
+    std::vector<double> y;
+    for (const double value : x) y.push_back(3 * std::pow(value, exponent));
+    EXPECT_NEAR(testbench::log_log_slope(x, y), exponent, 1e-12);
+  }
+}
+
+TEST(ErrorCurve, PointsWithoutAPositiveErrorAreLeftOutOfTheSlope) {
+  EXPECT_NEAR(testbench::log_log_slope({1, 2, 4, 8}, {1, 0.5, -1, std::nan("")}), -1.0, 1e-12);
+  EXPECT_TRUE(std::isnan(testbench::log_log_slope({1, 2}, {1, -1})));
+  EXPECT_TRUE(std::isnan(testbench::log_log_slope({}, {})));
+  EXPECT_TRUE(std::isnan(testbench::log_log_slope({2, 2}, {1, 3})));
+}
+
+TEST(ErrorCurve, CostIsErrorTimesTime) {
+  ImageError error;
+  error.mse = 2e-4;
+  EXPECT_DOUBLE_EQ(testbench::cost_of_error(error, 5.0), 1e-3);
+}
+
+/// Looks along +z from the origin; one unit at depth 1 is half the film's height.
+Scene light_scene(const glm::dvec3 (&corners)[3], FilmSize film) {
+  Scene scene;
+  scene.camera.direction = {0, 0, 1};
+  scene.camera.up = {0, 1, 0};
+  scene.camera.vertical_field_of_view_radians = 2 * std::atan(1.0);
+  scene.film = film;
+  scene.materials = {{"light", glm::dvec3(0.5), glm::dvec3(1.0)}, {"grey", glm::dvec3(0.5), glm::dvec3(0.0)}};
+  scene.triangles = {{{corners[0], corners[1], corners[2]}, 0}};
+  return scene;
+}
+
+int marked(const Scene& scene) {
+  const std::vector<bool> pixels = testbench::light_pixels(scene);
+  return int(std::count(pixels.begin(), pixels.end(), true));
+}
+
+TEST(LightPixels, AreThoseThatATriangleTouches) {
+  // Right is -x here. Half of the picture, cut along its diagonal; wound to face the camera.
+  Scene scene = light_scene({{1, 1, 1}, {1, -1, 1}, {-1, -1, 1}}, {8, 8});
+  EXPECT_EQ(marked(scene), 36);  // 28 below the diagonal and the 8 it crosses
+  std::swap(scene.triangles[0].vertex[1], scene.triangles[0].vertex[2]);
+  EXPECT_EQ(marked(scene), 0) << "its back emits nothing";
+}
+
+TEST(LightPixels, SurfacesThatDoNotEmitAreNone) {
+  Scene scene = light_scene({{1, 1, 1}, {1, -1, 1}, {-1, -1, 1}}, {8, 8});
+  scene.triangles.push_back(
+      {{scene.triangles[0].vertex[0], scene.triangles[0].vertex[2], scene.triangles[0].vertex[1]}, 0});
+  EXPECT_EQ(marked(scene), 36);
+  for (auto& triangle : scene.triangles) triangle.material = 1;
+  EXPECT_EQ(marked(scene), 0);
+}
+
+TEST(LightPixels, TrianglesBehindTheCameraAreNoneAndThroughItAreClipped) {
+  Scene behind = light_scene({{1, 1, -1}, {1, -1, -1}, {-1, -1, -1}}, {8, 8});
+  behind.triangles.push_back(
+      {{behind.triangles[0].vertex[0], behind.triangles[0].vertex[2], behind.triangles[0].vertex[1]}, 0});
+  EXPECT_EQ(marked(behind), 0);
+  // A floor one below the camera, from behind it to far ahead: the lower half of the picture, nearly.
+  Scene floor = light_scene({{-1e6, -1, -5}, {0, -1, 1e6}, {1e6, -1, -5}}, {8, 8});
+  EXPECT_EQ(marked(floor), 32);
+}
+
+}  // namespace

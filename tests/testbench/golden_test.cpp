@@ -1,0 +1,186 @@
+#include "testbench/golden/golden.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "testbench/system/error.hpp"
+
+namespace {
+
+using testbench::GoldenGrid;
+using testbench::GoldenTables;
+
+class Golden : public testing::Test {
+ protected:
+  Golden() : directory_(std::filesystem::path(testing::TempDir()) / ("golden_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(directory_);
+  }
+  ~Golden() override { std::filesystem::remove_all(directory_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(directory_ / name) << text;
+  }
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(directory_ / name).rdbuf();
+    return text.str();
+  }
+  GoldenGrid grid(const std::string& text) const {
+    write("grid.toml", text);
+    return testbench::read_golden_grid(directory_, {});
+  }
+  std::string refusal(const std::string& text) const {
+    try {
+      grid(text);
+      return "";
+    } catch (const testbench::InputError& error) {
+      return std::string(error.what()).substr(directory_.string().size() + 1);
+    }
+  }
+
+  std::filesystem::path directory_;
+};
+
+const std::string kHead = "width = 6\nheight = 4\nsamples = 1\n";
+
+std::string product(const std::string& more) {
+  return "[[grid]]\nscenes = [\"" + std::string(CSX600_SCENES_DIR) + "/cornell_box\"]\n" + more;
+}
+const std::string kTwoChips = product(
+    "chips = [\"csx600\", \"paper\"]\nprograms = [\"segments\", \"full\"]\nn = [0, 2]\n"
+    "buffers = [\"loads\"]\ntimings = [\"lt\", \"at\"]\n");
+const std::string kOneRun = product(
+    "chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = [\"both\"]\ntimings = [\"lt\"]\n");
+
+TEST_F(Golden, GridIsEveryCombination) {
+  const GoldenGrid read = grid(kHead + kTwoChips + kOneRun + kTwoChips);  // each once
+  EXPECT_EQ(read.film.width, 6);
+  ASSERT_EQ(read.runs.size(), 17u);
+  EXPECT_EQ(read.runs[0].file, "cornell_box-csx600.csv");
+  EXPECT_EQ(read.runs[0].name, "segments n0 loads lt");
+  EXPECT_EQ(read.runs[15].file, "cornell_box-paper.csv");
+  EXPECT_EQ(read.runs[15].name, "full n2 loads at");
+  EXPECT_EQ(read.runs[15].options.chip.preset, "paper");
+  EXPECT_EQ(read.runs[15].options.program.n, 2);
+  EXPECT_FALSE(read.runs[15].options.program.buffer_saves);
+  EXPECT_EQ(read.runs[15].options.timing, model::TimingStyle::approximately_timed);
+  EXPECT_EQ(read.runs[16].name, "full n1 both lt");
+}
+
+TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
+  EXPECT_NE(refusal("width = ").find("grid.toml: cannot be read as TOML"), std::string::npos);
+  EXPECT_EQ(refusal("height = 4\nsamples = 1\n" + kOneRun),
+            "grid.toml: width: found none, allowed is an integer from 1 to 10000");
+  EXPECT_EQ(refusal(kHead), "grid.toml: grid: found none, allowed is one [[grid]] or more");
+  EXPECT_EQ(refusal("colour = 1\n" + kHead + kOneRun).rfind("grid.toml: colour: found an unknown key", 0),
+            0u);
+  EXPECT_EQ(refusal(kHead + product("chips = [\"csx600\"]\nprograms = [\"fast\"]\nn = [1]\nbuffers = "
+                                    "[\"both\"]\ntimings = [\"lt\"]\n")),
+            "grid.toml: programs: found fast, allowed is one of direct, full, segments");
+  EXPECT_EQ(refusal(kHead + product("chips = [\"csx6\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = "
+                                    "[\"both\"]\ntimings = [\"lt\"]\n"))
+                .rfind("grid.toml: ", 0),
+            0u);
+  EXPECT_EQ(refusal(kHead + product("chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [\"1\"]\nbuffers = "
+                                    "[\"both\"]\ntimings = [\"lt\"]\n")),
+            "grid.toml: n: found no list or one with other values, allowed is a list of strings, or of "
+            "integers for n");
+  const auto of_tree = [&](const std::string& key) {
+    return refusal(kHead + product("chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = "
+                                   "[\"both\"]\ntimings = [\"lt\"]\n" +
+                                   key));
+  };
+  EXPECT_EQ(of_tree("node_widths = [3]\n"), "grid.toml: node_widths: found 3, allowed is one of 2, 4, 8");
+  EXPECT_EQ(of_tree("node_formats = [\"fp16\"]\n"),
+            "grid.toml: node_formats: found fp16, allowed is one of fp64, fp32, quantised8");
+  EXPECT_EQ(of_tree("traversals = [\"magic\"]\n").rfind("grid.toml: traversals: found magic, allowed is", 0),
+            0u);
+}
+
+TEST_F(Golden, TreesHaveAWayAFormatAndAWidth) {
+  const GoldenGrid read = grid(kHead + product("chips = [\"csx600\"]\nprograms = [\"segments\"]\nn = [1]\n"
+                                               "buffers = [\"both\"]\ntimings = [\"lt\"]\n"
+                                               "traversals = [\"brute_force\", \"refill\"]\n"
+                                               "node_formats = [\"fp64\"]\nnode_widths = [2, 8]\n"));
+  ASSERT_EQ(read.runs.size(), 3u);
+  EXPECT_EQ(read.runs[0].name, "segments n1 both lt");
+  EXPECT_EQ(read.runs[1].name, "segments n1 both lt refill fp64 2");
+  EXPECT_EQ(read.runs[2].name, "segments n1 both lt refill fp64 8");
+  const GoldenTables found = testbench::run_golden(read, 1);
+  const auto value = [&](std::size_t run, const std::string& key) -> std::string {
+    for (const auto& [name, counter] : found.at("cornell_box-csx600.csv")[run].second)
+      if (name == key) return counter.dump();
+    return "";
+  };
+  EXPECT_EQ(value(0, "image_sha256"), value(1, "image_sha256"));
+  EXPECT_EQ(value(0, "image_sha256"), value(2, "image_sha256"));
+  EXPECT_NE(value(1, "simulated_cycles"), value(2, "simulated_cycles"));
+}
+
+TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {
+  const GoldenTables found = testbench::run_golden(grid(kHead + kTwoChips), 2);
+  ASSERT_EQ(found.size(), 2u);
+  ASSERT_EQ(found.at("cornell_box-paper.csv").size(), 8u);
+  write("cornell_box-gone.csv", "key,a\n");
+  testbench::write_golden(directory_, found);
+  EXPECT_EQ(testbench::golden_moves(testbench::read_golden(directory_), found), "");
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "cornell_box-gone.csv"));
+  EXPECT_EQ(read("cornell_box-csx600.csv").find("\nhost."), std::string::npos);
+  EXPECT_NE(read("cornell_box-csx600.csv").find("\nchip.control_unit.cycles_by_cause.poly,"),
+            std::string::npos);
+  EXPECT_NE(read("cornell_box-csx600.csv").find("\nimage_sha256,"), std::string::npos);
+}
+
+TEST_F(Golden, WhatMovedIsNamedWithItsRunsAndDistance) {
+  const GoldenTables kept = testbench::run_golden(grid(kHead + kTwoChips), 2);
+  const auto set = [](GoldenTables& tables, std::size_t run, const std::string& key, double factor) {
+    for (auto& [name, value] : tables.at("cornell_box-paper.csv")[run].second)
+      if (name == key) value = value.get<double>() * factor;
+  };
+  GoldenTables found = kept;
+  set(found, 0, "chip.pio.busy_cycles", 2);
+  set(found, 3, "chip.pio.busy_cycles", 0.75);
+  const std::string moves = testbench::golden_moves(kept, found);
+  EXPECT_EQ(
+      moves.rfind("  chip.pio.busy_cycles: in 2 of 16 runs  -25 to +50 %; cornell_box-paper segments n0 "
+                  "loads lt: ",
+                  0),
+      0u)
+      << moves;
+  EXPECT_EQ(std::count(moves.begin(), moves.end(), '\n'), 1);
+  found = kept;
+  found.at("cornell_box-paper.csv").pop_back();
+  EXPECT_EQ(testbench::golden_moves(kept, found), "  run gone: cornell_box-paper full n2 loads at\n");
+  EXPECT_EQ(testbench::golden_moves(found, kept), "  new run: cornell_box-paper full n2 loads at\n");
+}
+
+TEST_F(Golden, RunsEqualWhatAnotherParameterMoves) {
+  const GoldenTables kept = testbench::run_golden(grid(kHead + kOneRun), 1);
+  EXPECT_EQ(testbench::golden_moves(kept, testbench::run_golden(grid(kHead + kOneRun), 1)), "");
+  GoldenGrid slower = grid(kHead + kOneRun);
+  slower.runs[0].options.chip.pio.setup_cycles += 1;
+  const std::string moves = testbench::golden_moves(kept, testbench::run_golden(slower, 1));
+  EXPECT_NE(moves.find("chip.pio.setup_cycles: in 1 of 1 runs"), std::string::npos) << moves;
+  EXPECT_EQ(moves.find("image_sha256"), std::string::npos) << moves;
+}
+
+TEST_F(Golden, FilesThatAreNoTablesAreRefusedByName) {
+  const auto refused = [&](const std::string& text) -> std::string {
+    write("a.csv", text);
+    try {
+      testbench::read_golden(directory_);
+      return "";
+    } catch (const testbench::InputError& error) {
+      return std::string(error.what()).substr(directory_.string().size() + 1);
+    }
+  };
+  EXPECT_EQ(refused("key,one,two\na,1,2\nb,,3\n"), "");
+  EXPECT_EQ(refused("").rfind("a.csv: not a table of golden runs", 0), 0u);
+  EXPECT_EQ(refused("key,one,two\na,1,2\nb,3\n"), "a.csv:3: found 2 cells, allowed are 3");
+}
+
+}  // namespace

@@ -1,0 +1,295 @@
+#include <gtest/gtest.h>
+#include <png.h>
+#include <sys/resource.h>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "testbench/film/image_file.hpp"
+#include "testbench/system/atomic_file.hpp"
+#include "testbench/system/error.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using testbench::Film;
+using testbench::InputError;
+using testbench::RunError;
+
+class ImageFileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    directory_ = fs::path(testing::TempDir()) / (std::string("image_file_") + test->name());
+    fs::create_directories(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_))
+      names.push_back(entry.path().filename().string());
+    return names;
+  }
+
+  fs::path directory_;
+};
+
+std::string content(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// 3 x 2; every pixel of its own colour, two samples each but the last, which has none.
+Film small_film() {
+  Film film({3, 2}, 1.0);
+  for (int pixel = 0; pixel < 5; ++pixel) {
+    film.add(pixel, {0.25 * pixel, 0.0, 1.0 - 0.25 * pixel});
+    film.add(pixel, {0.25 * pixel, 0.5, 1.0 - 0.25 * pixel});
+  }
+  return film;
+}
+
+TEST_F(ImageFileTest, exr_returns_the_means_row_by_row_from_the_top) {
+  const fs::path path = directory_ / "a.exr";
+  const Film film = small_film();
+  write_exr(path, film, {});
+  const testbench::ExrImage image = testbench::read_exr_rgb(path);
+  EXPECT_EQ(image.width, 3);
+  EXPECT_EQ(image.height, 2);
+  const std::vector<double> rgb = film.rgb();
+  ASSERT_EQ(image.rgb.size(), rgb.size());
+  for (std::size_t i = 0; i < rgb.size(); ++i) EXPECT_EQ(image.rgb[i], static_cast<float>(rgb[i]));
+  EXPECT_EQ(files(), std::vector<std::string>{"a.exr"});
+}
+
+TEST_F(ImageFileTest, exr_holds_variance_samples_and_provenance) {
+  const fs::path path = directory_ / "a.exr";
+  const Film film = small_film();
+  write_exr(path, film,
+            {{"commandLine", "csx600 render"}, {"aLongAttributeNameOfMoreThan31Characters", "x"}});
+
+  Imf::InputFile file(path.c_str());
+  EXPECT_EQ(file.header().lineOrder(), Imf::INCREASING_Y);
+  const auto* attribute = file.header().findTypedAttribute<Imf::StringAttribute>("commandLine");
+  ASSERT_NE(attribute, nullptr);
+  EXPECT_EQ(attribute->value(), "csx600 render");
+  EXPECT_NE(
+      file.header().findTypedAttribute<Imf::StringAttribute>("aLongAttributeNameOfMoreThan31Characters"),
+      nullptr);
+
+  std::vector<float> variance(6);
+  std::vector<std::uint32_t> samples(6);
+  const Imath::Box2i window = file.header().dataWindow();
+  Imf::FrameBuffer buffer;
+  buffer.insert("variance.G", Imf::Slice::Make(Imf::FLOAT, variance.data(), window));
+  buffer.insert("samples", Imf::Slice::Make(Imf::UINT, samples.data(), window));
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.min.y, window.max.y);
+  for (int pixel = 0; pixel < 6; ++pixel) {
+    const auto index = static_cast<std::size_t>(pixel);
+    EXPECT_EQ(variance[index], static_cast<float>(film.variance_of_mean(pixel).y));
+    EXPECT_EQ(samples[index], pixel < 5 ? 2U : 0U);
+  }
+  EXPECT_EQ(variance[0], 0.0625F);
+  for (const char* name : {"R", "G", "B", "variance.R", "variance.G", "variance.B"}) {
+    ASSERT_NE(file.header().channels().findChannel(name), nullptr) << name;
+    EXPECT_EQ(file.header().channels().findChannel(name)->type, Imf::FLOAT);
+  }
+  EXPECT_EQ(file.header().channels().findChannel("samples")->type, Imf::UINT);
+}
+
+TEST_F(ImageFileTest, exr_bytes_are_the_same_every_time) {
+  write_exr(directory_ / "a.exr", small_film(), {{"key", "value"}});
+  write_exr(directory_ / "b.exr", small_film(), {{"key", "value"}});
+  EXPECT_FALSE(content(directory_ / "a.exr").empty());
+  EXPECT_EQ(content(directory_ / "a.exr"), content(directory_ / "b.exr"));
+}
+
+TEST_F(ImageFileTest, exr_refuses_reserved_attribute_names) {
+  EXPECT_THROW(write_exr(directory_ / "a.exr", small_film(), {{"channels", "x"}}), std::invalid_argument);
+  EXPECT_THROW(write_exr(directory_ / "a.exr", small_film(), {{"", "x"}}), std::invalid_argument);
+  EXPECT_TRUE(files().empty());
+}
+
+std::vector<unsigned char> read_png(const fs::path& path, png_image& image) {
+  image = {};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0) << image.message;
+  EXPECT_EQ(image.format, static_cast<png_uint_32>(PNG_FORMAT_RGB));
+  std::vector<unsigned char> codes(PNG_IMAGE_SIZE(image));
+  EXPECT_NE(png_image_finish_read(&image, nullptr, codes.data(), 0, nullptr), 0) << image.message;
+  return codes;
+}
+
+TEST_F(ImageFileTest, png_is_srgb_from_the_top_row_down) {
+  Film film({2, 2}, 1.0);
+  film.add(0, {1.0, 0.0, 0.0});
+  film.add(1, {0.5, 7.0, 0.001});
+  film.add(2, {0.0, 0.2158605, 0.0});
+  write_png(directory_ / "a.png", film);
+  png_image image;
+  const std::vector<unsigned char> codes = read_png(directory_ / "a.png", image);
+  EXPECT_EQ(image.width, 2U);
+  EXPECT_EQ(image.height, 2U);
+  EXPECT_EQ(codes, (std::vector<unsigned char>{255, 0, 0, 188, 255, 3, 0, 128, 0, 0, 0, 0}));
+  EXPECT_EQ(files(), std::vector<std::string>{"a.png"});
+}
+
+TEST(SrgbCode, follows_the_curve_of_iec_61966_2_1) {
+  EXPECT_EQ(testbench::srgb_code(-1.0), 0);
+  EXPECT_EQ(testbench::srgb_code(0.0), 0);
+  EXPECT_EQ(testbench::srgb_code(0.0031308), 10);  // 12.92 x 0.0031308 x 255 = 10.3
+  EXPECT_EQ(testbench::srgb_code(0.18), 118);
+  EXPECT_EQ(testbench::srgb_code(0.5), 188);
+  EXPECT_EQ(testbench::srgb_code(1.0), 255);
+  EXPECT_EQ(testbench::srgb_code(100.0), 255);
+  for (int i = 0; i < 10000; ++i)
+    EXPECT_LE(testbench::srgb_code(i / 1e4), testbench::srgb_code((i + 1) / 1e4));
+}
+
+TEST_F(ImageFileTest, exr_film_reads_back_mean_variance_and_attributes) {
+  const fs::path path = directory_ / "a.exr";
+  const Film film = small_film();
+  write_exr(path, film, {{"csx600.seed", "7"}});
+  const testbench::ExrFilm found = testbench::read_exr_film(path);
+  EXPECT_EQ(found.width, 3);
+  EXPECT_EQ(found.height, 2);
+  EXPECT_EQ(found.attributes.at("csx600.seed"), "7");
+  ASSERT_EQ(found.variance.size(), 18u);
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const std::size_t i = 3 * std::size_t(pixel) + std::size_t(channel);
+      EXPECT_EQ(found.rgb[i], float(film.mean(pixel)[channel]));
+      EXPECT_EQ(found.variance[i], float(film.variance_of_mean(pixel)[channel]));
+    }
+  }
+  EXPECT_THROW(testbench::read_exr_film(directory_ / "none.exr"), InputError);
+}
+
+TEST_F(ImageFileTest, reading_refuses_what_is_no_rgb_exr) {
+  EXPECT_THROW(testbench::read_exr_rgb(directory_ / "none.exr"), InputError);
+  std::ofstream(directory_ / "text.exr") << "no image";
+  EXPECT_THROW(testbench::read_exr_rgb(directory_ / "text.exr"), InputError);
+  write_exr(directory_ / "cut.exr", small_film(), {});
+  fs::resize_file(directory_ / "cut.exr", fs::file_size(directory_ / "cut.exr") - 20);
+  EXPECT_THROW(testbench::read_exr_rgb(directory_ / "cut.exr"), InputError);
+
+  Imf::Header header(1, 1);
+  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  float grey = 0.5F;
+  Imf::FrameBuffer buffer;
+  buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&grey), sizeof grey, sizeof grey));
+  {
+    Imf::OutputFile file((directory_ / "grey.exr").c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(1);
+  }
+  try {
+    testbench::read_exr_rgb(directory_ / "grey.exr");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no channel R"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(ImageFileTest, atomic_write_replaces_the_old_content) {
+  const fs::path path = directory_ / "a.txt";
+  testbench::write_bytes_atomically(path, "old");
+  testbench::write_bytes_atomically(path, std::string_view("new\0content", 11));
+  EXPECT_EQ(content(path), std::string("new\0content", 11));
+  EXPECT_EQ(files(), std::vector<std::string>{"a.txt"});
+}
+
+TEST_F(ImageFileTest, failing_writer_leaves_the_old_content_and_no_temporary_file) {
+  const fs::path path = directory_ / "a.txt";
+  testbench::write_bytes_atomically(path, "old");
+  const auto failing = [](const fs::path& temporary) {
+    std::ofstream(temporary) << "half";
+    throw std::runtime_error("the writer broke");
+  };
+  try {
+    testbench::write_atomically(path, failing);
+    FAIL() << "no error";
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("the writer broke"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(files(), std::vector<std::string>{"a.txt"});
+}
+
+/// Limits the size of files this process may write, as a full disk would; restores everything at the end.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    rlimit limit = old_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, old_handler_);
+  }
+
+ private:
+  rlimit old_{};
+  void (*old_handler_)(int);
+};
+
+TEST_F(ImageFileTest, short_write_is_a_run_error_and_leaves_nothing) {
+  const FileSizeLimit limit(100);
+  EXPECT_THROW(write_exr(directory_ / "a.exr", small_film(), {}), RunError);
+  EXPECT_THROW(testbench::write_bytes_atomically(directory_ / "a.txt", std::string(1000, 'x')), RunError);
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(ImageFileTest, refuses_targets_that_cannot_be_written) {
+  std::ofstream(directory_ / "file") << "x";
+  fs::create_directory(directory_ / "folder");
+  for (const fs::path& path :
+       {directory_ / "none" / "a.exr", directory_ / "file" / "a.exr", directory_ / "folder",
+        directory_ / "folder" / "", fs::path(""), fs::path("/dev/null"), fs::path("/proc/a.exr")}) {
+    SCOPED_TRACE(path);
+    EXPECT_THROW(testbench::require_writable(path), InputError);
+    EXPECT_THROW(testbench::write_bytes_atomically(path, "x"), InputError);
+    try {
+      write_exr(path, small_film(), {});
+      FAIL() << "no error";
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_EQ(message.find(path.string()), 0U) << message;
+      EXPECT_NE(message.find("allowed: "), std::string::npos) << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+  }
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(ImageFileTest, require_writable_leaves_nothing_behind) {
+  EXPECT_NO_THROW(testbench::require_writable(directory_ / "a.exr"));
+  EXPECT_TRUE(files().empty());
+  testbench::write_bytes_atomically(directory_ / "a.exr", "old");
+  EXPECT_NO_THROW(testbench::require_writable(directory_ / "a.exr"));
+  EXPECT_EQ(content(directory_ / "a.exr"), "old");
+  const fs::path here = fs::current_path();
+  fs::current_path(directory_);
+  EXPECT_NO_THROW(testbench::require_writable("relative.exr"));
+  fs::current_path(here);
+}
+
+}  // namespace

@@ -1,0 +1,217 @@
+#include "testbench/run/traversal_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware/cn/machine.hpp"
+#include "firmware/path_tracer/path_tracer.hpp"
+#include "model/config/chip_presets.hpp"
+#include "testbench/machine/native_machine.hpp"
+
+namespace {
+
+using path_tracer::ProgramConfig;
+using path_tracer::Traversal;
+using path_tracer::TreeShape;
+using testbench::choose_traversal;
+using testbench::estimate_traversal;
+
+const model::ChipConfig kChip = model::preset("csx600");
+
+TEST(TraversalChoice, ABoxDoesNotPayForATreeAndAMeshDoes) {
+  EXPECT_EQ(choose_traversal(1, TreeShape{}, kChip).traversal, Traversal::brute_force);
+  EXPECT_EQ(choose_traversal(36, TreeShape{}, kChip).traversal, Traversal::brute_force);
+  EXPECT_EQ(choose_traversal(1000, TreeShape{}, kChip).traversal, Traversal::refill);
+  EXPECT_EQ(choose_traversal(10000000, TreeShape{}, kChip).traversal, Traversal::refill);
+}
+
+TEST(TraversalChoice, SaysWhy) {
+  const std::string reason = choose_traversal(1000, TreeShape{}, kChip).reason;
+  EXPECT_EQ(reason.find("1000 triangles: about "), 0u) << reason;
+  EXPECT_NE(reason.find("by brute force"), std::string::npos) << reason;
+}
+
+TEST(TraversalChoice, CostsGrowWithTheScene) {
+  testbench::TraversalCosts before = estimate_traversal(1, TreeShape{}, kChip);
+  for (std::size_t triangles = 2; triangles < 20000000; triangles *= 2) {
+    const testbench::TraversalCosts costs = estimate_traversal(triangles, TreeShape{}, kChip);
+    EXPECT_GT(costs.brute_force, before.brute_force);
+    EXPECT_GE(costs.tree, before.tree);
+    before = costs;
+  }
+}
+
+/// The tree lives on programmed I/O, brute force on the mono data cache.
+TEST(TraversalChoice, FollowsTheChip) {
+  model::ChipConfig slow_io = kChip;
+  slow_io.pio.per_pe_cycles = 400;
+  EXPECT_GT(estimate_traversal(100, TreeShape{}, slow_io).tree,
+            3 * estimate_traversal(100, TreeShape{}, kChip).tree);
+  EXPECT_EQ(choose_traversal(200, TreeShape{}, kChip).traversal, Traversal::refill);
+  EXPECT_EQ(choose_traversal(200, TreeShape{}, slow_io).traversal, Traversal::brute_force);
+}
+
+/// Whether the program finds room in the SRAM, which is of the whole chip's PEs.
+bool fits(const ProgramConfig& program) {
+  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 64}, kChip.chip.pes, program);
+  testbench::NativeMachine machine(kChip.chip.pes, kChip.poly.sram_bytes, layout.total_bytes);
+  try {
+    path_tracer::PathTracer(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), program, layout,
+                            {});
+  } catch (const std::exception&) {
+    return false;
+  }
+  return true;
+}
+
+TEST(ResidentNodes, AreAsManyAsFit) {
+  for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill, Traversal::packets})
+    for (const int n : {0, 1}) {
+      ProgramConfig program;
+      program.traversal = traversal;
+      program.n = n;
+      program.tree.resident_nodes = testbench::kAsManyAsFit;
+      testbench::complete_traversal(1000000, kChip, program);
+      EXPECT_GT(program.tree.resident_nodes, 1);
+      EXPECT_TRUE(fits(program)) << program.tree.resident_nodes;
+      ++program.tree.resident_nodes;
+      EXPECT_FALSE(fits(program)) << program.tree.resident_nodes;
+    }
+}
+
+/// As `program` wants it, as it fits.
+ProgramConfig fitted(ProgramConfig program, const testbench::TreeWishes& wishes = {},
+                     std::size_t triangles = 1000) {
+  program.tree = testbench::tree_that_fits(triangles, program, kChip, wishes);
+  return program;
+}
+
+TEST(TreeThatFits, IsTheOneWantedIfThatFits) {
+  for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill, Traversal::packets}) {
+    ProgramConfig program;
+    program.traversal = traversal;
+    const ProgramConfig same = fitted(program);
+    EXPECT_EQ(same.tree.stack_entries, program.tree.stack_entries);
+    EXPECT_EQ(same.tree.treelet_nodes, program.tree.treelet_nodes);
+  }
+}
+
+TEST(TreeThatFits, HasAShorterStackThenSmallerTreelets) {
+  ProgramConfig program;
+  program.traversal = Traversal::temporary_bin;
+  program.tree.resident_nodes = 1;
+  program.n = 2;
+  testbench::TreeWishes floats;
+  floats.node_format = path_tracer::NodeFormat::fp32;
+  testbench::TreeWishes treelets_of_four = floats;
+  treelets_of_four.treelet_nodes = 4;
+  const ProgramConfig shorter = fitted(program, treelets_of_four);
+  EXPECT_EQ(shorter.tree.treelet_nodes, 4);
+  EXPECT_LT(shorter.tree.stack_entries, program.tree.stack_entries);
+  EXPECT_TRUE(fits(shorter));
+  ProgramConfig longer = shorter;
+  longer.tree.stack_entries *= 2;
+  EXPECT_FALSE(fits(longer)) << longer.tree.stack_entries;
+
+  program.n = 3;  // ten records of a ray
+  ASSERT_FALSE(fits(program));
+  const ProgramConfig smaller = fitted(program, floats);
+  EXPECT_TRUE(fits(smaller));
+  EXPECT_EQ(smaller.tree.treelet_nodes, 1);
+  EXPECT_GE(smaller.tree.stack_entries, 1);
+}
+
+TEST(TreeThatFits, LeavesWishesAlone) {
+  ProgramConfig program;
+  program.traversal = Traversal::temporary_bin;
+  program.n = 3;
+  const ProgramConfig wished = fitted(program, {2, 4});
+  EXPECT_EQ(wished.tree.treelet_nodes, 2);
+  EXPECT_EQ(wished.tree.stack_entries, 4);
+  EXPECT_EQ(fitted(program, {{}, 1}).tree.stack_entries, 1);
+  program.n = 1;
+  program.tree.resident_nodes = 64;  // of which no tree fits
+  EXPECT_EQ(fitted(program).tree.stack_entries, program.tree.stack_entries);
+  EXPECT_EQ(fitted(program).tree.treelet_nodes, program.tree.treelet_nodes);
+}
+
+/// What the user asks for is weighed, too, when a way is chosen.
+TEST(TreeWishes, ChangeTheEstimate) {
+  const ProgramConfig program;
+  const path_tracer::TreeShape& tree = program.tree;
+  const path_tracer::TreeShape large = testbench::wished_tree(program, {16});
+  EXPECT_EQ(large.treelet_nodes, 16);
+  EXPECT_EQ(testbench::wished_tree(program, {}).treelet_nodes, tree.treelet_nodes);
+  EXPECT_GT(testbench::estimate_traversal(1000000, large, kChip).tree,
+            testbench::estimate_traversal(1000000, tree, kChip).tree);
+}
+
+TEST(TreeThatFits, IsTheOneWishedForEvenIfItIsFarTooLarge) {
+  ProgramConfig program;
+  program.traversal = Traversal::refill;
+  program.n = 8;
+  EXPECT_EQ(fitted(program, {path_tracer::kMaxTreeletNodes}).tree.treelet_nodes,
+            path_tracer::kMaxTreeletNodes);
+}
+
+TEST(TreeThatFits, HasWideNodesWhereTrianglesAreMany) {
+  constexpr std::size_t kMany = 1000000;
+  ProgramConfig program;
+  for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill, Traversal::lock_step}) {
+    program.traversal = traversal;
+    EXPECT_EQ(fitted(program, {}, 1000).tree.layout.width, 4);
+    const ProgramConfig wide = fitted(program, {}, kMany);
+    EXPECT_EQ(wide.tree.layout.width, 8);
+    EXPECT_EQ(wide.tree.treelet_nodes, 1);
+    EXPECT_TRUE(fits(wide));
+  }
+  program.traversal = Traversal::packets;
+  EXPECT_EQ(fitted(program, {}, kMany).tree.layout.width, 4);
+}
+
+TEST(TreeThatFits, HasTheFormatThatSuitsTheWayOrIsWishedFor) {
+  using path_tracer::NodeFormat;
+  ProgramConfig program;
+  const auto format = [&](Traversal traversal, const testbench::TreeWishes& wishes) {
+    program.traversal = traversal;
+    return fitted(program, wishes, 1000000).tree.layout.format;
+  };
+  EXPECT_EQ(format(Traversal::refill, {}), NodeFormat::quantised8);
+  EXPECT_EQ(format(Traversal::temporary_bin, {}), NodeFormat::quantised8);
+  EXPECT_EQ(format(Traversal::lock_step, {}), NodeFormat::fp32);
+  EXPECT_EQ(format(Traversal::packets, {}), NodeFormat::fp32);
+  EXPECT_EQ(format(Traversal::refill, {{}, {}, 2}), NodeFormat::fp32) << "quantised nodes have four or more";
+  EXPECT_EQ(format(Traversal::refill, {{}, {}, {}, {}, NodeFormat::fp64}), NodeFormat::fp64);
+}
+
+TEST(TreeThatFits, HasNarrowNodesWhereWideOnesDoNotFit) {
+  ProgramConfig program;
+  program.traversal = Traversal::temporary_bin;
+  program.n = 3;
+  program.tree.resident_nodes = 1;
+  const ProgramConfig narrow = fitted(program, {{}, {}, {}, {}, path_tracer::NodeFormat::fp32}, 1000000);
+  EXPECT_EQ(narrow.tree.layout.width, 4);
+  EXPECT_TRUE(fits(narrow));
+}
+
+TEST(TreeThatFits, HasTheWidthAndVisitsWishedFor) {
+  ProgramConfig program;
+  program.traversal = Traversal::refill;
+  const ProgramConfig binary = fitted(program, {{}, {}, 2, 5}, 1000000);
+  EXPECT_EQ(binary.tree.layout.width, 2);
+  EXPECT_EQ(binary.tree.treelet_nodes, 4) << "as many children as other widths";
+  EXPECT_EQ(binary.tree.visits, 5);
+  EXPECT_EQ(fitted(program, {{}, {}, 8, {}}).tree.layout.width, 8);
+}
+
+TEST(ResidentNodes, AreNoMoreThanATreeHas) {
+  ProgramConfig program;
+  program.traversal = Traversal::refill;
+  program.tree.resident_nodes = testbench::kAsManyAsFit;
+  testbench::complete_traversal(3, kChip, program);
+  EXPECT_LE(program.tree.resident_nodes, 3);
+  program.tree.resident_nodes = 2;
+  testbench::complete_traversal(1000000, kChip, program);
+  EXPECT_EQ(program.tree.resident_nodes, 2) << "as it was asked for";
+}
+
+}  // namespace

@@ -2,21 +2,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 #include "model/time/annotated_delay.hpp"
 #include "model/transaction/payload.hpp"
 
 namespace model {
-
-Cycles ControlStatistics::total() const {
-  return std::accumulate(cycles.begin(), cycles.end(), Cycles{0});
-}
-
-PioWaits ControlStatistics::pio_waits() const {
-  return {(*this)[CycleCause::wait_load], (*this)[CycleCause::wait_save],
-          (*this)[CycleCause::wait_pio_queue]};
-}
 
 ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config,
                          const ClockDomain& clock, PeArray& pe_array, Agenda* agenda)

@@ -10,6 +10,7 @@
 
 #include "firmware/cn/machine.hpp"
 #include "model/config/chip_config.hpp"
+#include "model/control/control_statistics.hpp"
 #include "model/control/data_cache.hpp"
 #include "model/control/semaphore_file.hpp"
 #include "model/control/thread_scheduler.hpp"
@@ -24,19 +25,6 @@
 #include "model/transaction/at_transport.hpp"
 
 namespace model {
-
-struct ControlStatistics {
-  std::array<Cycles, kCycleCauses> cycles{};  ///< by cause; the sum is the run
-  std::uint64_t mono_instructions = 0;
-  std::uint64_t data_cache_hits = 0;
-  std::uint64_t data_cache_misses = 0;
-  std::uint64_t thread_switches = 0;
-
-  Cycles operator[](CycleCause cause) const { return cycles[std::size_t(cause)]; }
-  Cycles total() const;
-  Cycles exposed_pio() const { return pio_waits().total(); }
-  PioWaits pio_waits() const;
-};
 
 /// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on a SystemC process
 /// and runs ahead by a local cycle count; it synchronises with SystemC time where the host can see it

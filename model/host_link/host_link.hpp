@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/config/chip_config.hpp"
+#include "model/host_link/host_link_statistics.hpp"
 #include "model/host_link/host_packets.hpp"
 #include "model/network/host_traffic.hpp"
 #include "model/observe/memory_observer.hpp"
@@ -14,13 +15,6 @@
 #include "model/transaction/payload_pool.hpp"
 
 namespace model {
-
-struct HostLinkStatistics {
-  std::uint64_t bytes_uploaded = 0;
-  std::uint64_t bytes_downloaded = 0;
-  std::uint64_t host_dmas = 0;
-  std::uint64_t busy_cycles = 0;
-};
 
 /// PCI-X or PCIe between host memory and mono memory (HostLinkTiming). Data move at once, by debug transport;
 /// their packets contend on the chip's network with those of the PIO engine and the control unit.

@@ -6,16 +6,9 @@
 
 #include "firmware/cn/chip/poly_memory.hpp"
 #include "model/config/chip_config.hpp"
+#include "model/pe_array/poly_sram_statistics.hpp"
 
 namespace model {
-
-struct PolySramStatistics {
-  std::uint64_t words_in = 0;   ///< 8-byte words written by programmed I/O, in all PEs
-  std::uint64_t words_out = 0;  ///< read by it
-  std::uint64_t port_cycles =
-      0;               ///< that programmed I/O took the ports; how many a kernel loses: stolen_cycles.hpp
-  int peak_bytes = 0;  ///< of one PE
-};
 
 /// The port side of the PEs' SRAM; the data are the machine's PolyMemory. `pio_socket` takes the PIO engine's
 /// requests: TLM_IGNORE_COMMAND with PeAddresses, address = offset in the SRAM. It books port use and never

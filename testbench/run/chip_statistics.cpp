@@ -1,5 +1,7 @@
 #include "testbench/run/chip_statistics.hpp"
 
+#include "model/csx600.hpp"
+
 namespace testbench {
 
 double ChipStatistics::pe_utilisation() const {

@@ -4,7 +4,18 @@
 #include <vector>
 
 #include "firmware/path_tracer/program/program.hpp"
-#include "model/csx600.hpp"
+#include "model/config/chip_config.hpp"
+#include "model/control/control_statistics.hpp"
+#include "model/host_link/host_link_statistics.hpp"
+#include "model/memory/ddr_timing.hpp"
+#include "model/network/clear_connect_timing.hpp"
+#include "model/observe/pio_observer.hpp"
+#include "model/pe_array/kernel_statistics.hpp"
+#include "model/pe_array/poly_sram_statistics.hpp"
+
+namespace model {
+class Csx600;
+}
 
 namespace testbench {
 

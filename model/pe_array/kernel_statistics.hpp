@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware/cn/chip/instruction.hpp"
+#include "model/time/cycles.hpp"
+
+namespace model {
+
+/// Cycles in which the control unit did nothing but wait for programmed I/O.
+struct PioWaits {
+  Cycles load = 0;   ///< on a semaphore of a mono-to-poly transfer
+  Cycles save = 0;   ///< on a semaphore of a poly-to-mono transfer
+  Cycles queue = 0;  ///< to queue a request
+
+  Cycles total() const { return load + save + queue; }
+  PioWaits& operator+=(const PioWaits& other) {
+    load += other.load, save += other.save, queue += other.queue;
+    return *this;
+  }
+  PioWaits operator-(const PioWaits& other) const {
+    return {load - other.load, save - other.save, queue - other.queue};
+  }
+};
+
+struct KernelStatistics {
+  std::string name;
+  std::uint64_t runs = 0;
+  Cycles cycles = 0;
+  cn::IssueCounts issued;
+  cn::IssueCounts executed;  ///< issued, each weighted by the PEs enabled
+  PioWaits waited_before;    ///< between the kernel before this one, whichever it was, and this one
+  /// [e]: runs that began with e PEs enabled, empty in total().
+  std::vector<std::uint64_t> runs_by_enabled_pes;
+  double issue_cycles = 0;         ///< before the code quality factor
+  double enabled_lane_cycles = 0;  ///< the same, each weighted by the PEs enabled
+
+  /// Share of the issued lane-cycles in which a PE was enabled. Counts PEs as the kernel, its loops and its
+  /// any-branches were entered; the branches of a plain poly if are not told apart.
+  double simd_efficiency(int num_pes) const {
+    return issue_cycles > 0 ? enabled_lane_cycles / (issue_cycles * num_pes) : 1.0;
+  }
+};
+
+}  // namespace model

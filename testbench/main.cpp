@@ -11,10 +11,7 @@ namespace {
 constexpr int kRunFailed = 1;
 constexpr int kWrongInput = 2;
 
-int run(int argc, char** argv) {
-  CLI::App app("A SystemC model of the ClearSpeed CSX600 that runs a binned, n-buffered path tracer",
-               "csx600");
-  app.require_subcommand(1);
+void add_commands(CLI::App& app) {
   testbench::add_render_command(app);
   testbench::add_reproduce_command(app);
   testbench::add_calibrate_command(app);
@@ -28,7 +25,14 @@ int run(int argc, char** argv) {
   testbench::add_stats_command(app);
   testbench::add_compare_command(app);
   testbench::add_golden_command(app);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("A SystemC model of the ClearSpeed CSX600 that runs a binned, n-buffered path tracer",
+               "csx600");
+  app.require_subcommand(1);
   try {
+    add_commands(app);
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return app.exit(help);

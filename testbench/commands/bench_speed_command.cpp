@@ -26,7 +26,6 @@ using path_tracer::Level;
 using path_tracer::Program;
 
 constexpr int kPes[] = {16, 32, 64, 96, 192, 384, 768, 1024};
-constexpr Level kLevels[] = {Level::x86_64_v2, Level::x86_64_v3, Level::x86_64_v4};
 /// Waves of a whole run fill a disk; this much of the image shows what tracing costs.
 constexpr FilmSize kTracedFilm{96, 96};
 
@@ -46,10 +45,6 @@ struct Variant {
 
   double segments_per_second() const { return double(segments) / times.median(); }
 };
-
-std::string level_name(Level level) {
-  return "v" + std::to_string(2 + static_cast<int>(level));
-}
 
 /// The film's hash and what simulated time it took must be the same each time.
 void add_result(Variant& variant, const Json& result) {
@@ -156,9 +151,9 @@ std::vector<Variant> BenchSpeedCommand::make_variants(const Scene& loaded) const
     });
   for (const int pes : kPes)
     add("PEs", std::to_string(pes), [&](Variant& variant) { variant.options.chip.chip.pes = pes; });
-  for (const Level of_level : kLevels)
+  for (const Level of_level : cn::usable_levels())
     if (of_level <= base.level)
-      add("level", level_name(of_level), [&](Variant& variant) { variant.options.level = of_level; });
+      add("level", cn::name_of(of_level), [&](Variant& variant) { variant.options.level = of_level; });
   return variants;
 }
 
@@ -246,7 +241,7 @@ void BenchSpeedCommand::run() {
   print_programs(variants);
   print_group(variants, "waves", "untraced");
   print_group(variants, "PEs", "96");
-  print_group(variants, "level", level_name(variants.back().options.level));
+  print_group(variants, "level", cn::name_of(variants.back().options.level));
   if (!json.empty()) write_bytes_atomically(json, to_json(variants).dump(2) + "\n");
   if (!csv.empty()) write_bytes_atomically(csv, to_csv(variants));
 }

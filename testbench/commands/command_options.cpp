@@ -84,16 +84,14 @@ void LevelOption::add_to(CLI::App& command) {
 }
 
 path_tracer::Level LevelOption::level() const {
-  using path_tracer::Level;
-  const Level widest = widest_level();
-  if (level_ == "auto") return widest;
-  const Level wanted = level_ == "v4"   ? Level::x86_64_v4
-                       : level_ == "v3" ? Level::x86_64_v3
-                                        : Level::x86_64_v2;
-  if (wanted > widest)
-    throw InputError("--level: found " + level_ + ", this machine executes levels up to v" +
-                     std::to_string(2 + static_cast<int>(widest)));
-  return wanted;
+  if (level_ == "auto") return widest_level();
+  const std::vector<cn::Level> usable = cn::usable_levels();
+  std::string allowed = "auto";
+  for (const cn::Level level : usable) {
+    if (cn::name_of(level) == level_) return level;
+    allowed += " or " + cn::name_of(level);
+  }
+  throw InputError("--level: found " + level_ + ", this build on this machine has " + allowed);
 }
 
 void add_samples_option(CLI::App& command, int& samples) {

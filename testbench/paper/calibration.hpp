@@ -42,7 +42,7 @@ struct Calibration {
 struct CalibrationOptions {
   int samples = 4;
   int at_once = 1;
-  path_tracer::Level level = path_tracer::Level::x86_64_v2;
+  path_tracer::Level level = cn::widest_level();
 };
 
 /// Fits by Newton's method with differences, each constant to one cell of fitted_cells(), and predicts the

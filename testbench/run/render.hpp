@@ -23,7 +23,7 @@ struct RenderOptions {
   path_tracer::ProgramConfig program;
   path_tracer::Work work;
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
-  path_tracer::Level level = path_tracer::Level::x86_64_v2;
+  path_tracer::Level level = cn::widest_level();
   ObservationOptions observation;  ///< on the chip only
   bool check_hazards = false;  ///< with kernels built for it, at x86-64-v2 (model/hazards/hazard_checker.hpp)
 };

@@ -41,7 +41,7 @@ double intersect_cycles(int triangles, const model::ChipConfig& chip) {
   arguments.triangle_count = triangles;
   arguments.hit_something = &hit;
   cn::IssueTree issued;
-  path_tracer::kernels(path_tracer::Level::x86_64_v2)
+  path_tracer::kernels(cn::widest_level())
       .intersect.run(arguments, memory, cn::LaneMask::first(kPes), issued);
   return cycles_of(issued.total(), chip);
 }
@@ -77,8 +77,7 @@ int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) try 
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
   constexpr int kPlenty = 1 << 18;
   NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
-  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), least,
-                                      layout, {});
+  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(cn::widest_level()), least, layout, {});
   return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
 } catch (const cn::PolyMemoryOverflow&) {
   return -1;  // not even with plenty

@@ -55,7 +55,7 @@ struct Validation {
 struct ValidationOptions {
   /// The chip of a preset, with the user's changes.
   std::function<model::ChipConfig(const std::string& preset)> chip;
-  cn::Level level = cn::Level::x86_64_v2;
+  cn::Level level = cn::widest_level();
   int jobs = 1;
 };
 

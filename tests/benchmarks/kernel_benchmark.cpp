@@ -15,11 +15,6 @@ constexpr int kPes = 96;
 constexpr int kTriangles = 38;
 constexpr double kReach = 4.0;
 
-bool is_executable(Level level) {
-  return level == Level::x86_64_v2 || (level == Level::x86_64_v3 && __builtin_cpu_supports("x86-64-v3")) ||
-         (level == Level::x86_64_v4 && __builtin_cpu_supports("x86-64-v4"));
-}
-
 /// Rays and triangles of a unit box.
 class KernelBench {
  public:
@@ -101,10 +96,8 @@ void fold(benchmark::State& state, Level level) {
 
 struct Registration {
   Registration() {
-    constexpr std::pair<Level, const char*> kLevels[] = {
-        {Level::x86_64_v2, "v2"}, {Level::x86_64_v3, "v3"}, {Level::x86_64_v4, "v4"}};
-    for (const auto& [level, name] : kLevels) {
-      if (!is_executable(level)) continue;
+    for (const Level level : cn::usable_levels()) {
+      const std::string name = cn::name_of(level);
       using std::string;
       benchmark::RegisterBenchmark((string("intersect, each triangle and PE/") + name).c_str(), intersect,
                                    level, false);

@@ -28,7 +28,7 @@ TEST(DgemmExample, IsTheHostsProduct) {
     EXPECT_EQ(verdict(run, run_natively(run, num_pes)), "")
         << "level " << int(level) << ", tiles " << of.shape.tiles << ", PEs " << num_pes;
   };
-  for (const cn::Level level : levels()) {
+  for (const cn::Level level : cn::usable_levels()) {
     for (const Dgemm::Problem& of : {problem({}, 1, 1, 1), problem({}, 2, 1, 3), problem({1, 8, 1}, 1, 3, 5),
                                      problem({6, 16, 2}, 3, 2, 2), problem({24, 32, 4}, 1, 1, 2)})
       expect(of, 24, level);
@@ -39,17 +39,18 @@ TEST(DgemmExample, IsTheHostsProduct) {
 
 TEST(DgemmExample, WorkIsAMultiplyAndAnAddForEachProduct) {
   // (2 x 16 x 2) x (4 x 6 x 3) x (16 x 4)
-  EXPECT_EQ(dgemm_run(problem({6, 16, 2}, 2, 3, 4), 24, cn::Level::x86_64_v2).work, 2.0 * 64 * 72 * 64);
+  EXPECT_EQ(dgemm_run(problem({6, 16, 2}, 2, 3, 4), 24, cn::narrowest_level()).work, 2.0 * 64 * 72 * 64);
 }
 
 TEST(DgemmExample, LevelsGiveTheSameBits) {
   const Dgemm::Problem of = problem({}, 1, 2, 3);
-  const auto first = run_natively(dgemm_run(of, 16, cn::Level::x86_64_v2), 16);
-  for (const cn::Level level : levels()) EXPECT_EQ(run_natively(dgemm_run(of, 16, level), 16), first);
+  const auto first = run_natively(dgemm_run(of, 16, cn::narrowest_level()), 16);
+  for (const cn::Level level : cn::usable_levels())
+    EXPECT_EQ(run_natively(dgemm_run(of, 16, level), 16), first);
 }
 
 TEST(DgemmExample, CheckNoticesOneWrongElement) {
-  const testbench::ExampleRun run = dgemm_run(problem({}, 1, 1, 2), 16, cn::Level::x86_64_v2);
+  const testbench::ExampleRun run = dgemm_run(problem({}, 1, 1, 2), 16, cn::narrowest_level());
   std::vector<std::uint8_t> mono = run_natively(run, 16);
   mono[mono.size() - 2] ^= 0x10;  // in the exponent of C's last element
   EXPECT_NE(verdict(run, mono).find("DGEMM: element ("), std::string::npos);
@@ -60,7 +61,7 @@ TEST(DgemmExample, ShapeMustFitPathFeedersAndSram) {
   const auto fault = [](Dgemm::Shape shape, int num_pes = 16) -> std::string {
     testbench::NativeMachine machine(num_pes, 6144, 8);
     try {
-      const Dgemm dgemm(machine, examples::kernels(cn::Level::x86_64_v2), problem(shape, 1, 1, 1));
+      const Dgemm dgemm(machine, examples::kernels(cn::narrowest_level()), problem(shape, 1, 1, 1));
       return {};
     } catch (const std::exception& error) {
       return error.what();

@@ -37,7 +37,7 @@ TEST(MonteCarloExample, AgreesWithBlackScholes) {
                                         {42, 40, 0.1, 0.2, 0.5},
                                         {100, 140, 0, 0.3, 2}};
   for (const MonteCarlo::Option& option : options) {
-    const testbench::ExampleRun run = monte_carlo_run(problem(option), 96, cn::Level::x86_64_v2);
+    const testbench::ExampleRun run = monte_carlo_run(problem(option), 96, cn::narrowest_level());
     EXPECT_EQ(verdict(run, run_natively(run, 96)), "") << option.strike;
   }
 }
@@ -46,35 +46,35 @@ TEST(MonteCarloExample, AgreesWithBlackScholes) {
 TEST(MonteCarloExample, AgreesWithATextbookPrice) {
   MonteCarlo::Problem of = problem({42, 40, 0.1, 0.2, 0.5});
   of.kernels = 200;
-  const double price = mean_payoff(monte_carlo_run(of, 96, cn::Level::x86_64_v2), 96) * std::exp(-0.1 * 0.5);
+  const double price = mean_payoff(monte_carlo_run(of, 96, cn::narrowest_level()), 96) * std::exp(-0.1 * 0.5);
   EXPECT_NEAR(price, 4.76, 0.02);
 }
 
 TEST(MonteCarloExample, SeedsGiveDifferentSamples) {
   MonteCarlo::Problem other = problem();
   other.seed = 2;
-  EXPECT_NE(mean_payoff(monte_carlo_run(problem(), 96, cn::Level::x86_64_v2), 96),
-            mean_payoff(monte_carlo_run(other, 96, cn::Level::x86_64_v2), 96));
+  EXPECT_NE(mean_payoff(monte_carlo_run(problem(), 96, cn::narrowest_level()), 96),
+            mean_payoff(monte_carlo_run(other, 96, cn::narrowest_level()), 96));
 }
 
 TEST(MonteCarloExample, CutIntoKernelsOfAnyLengthItDrawsTheSameSamples) {
   MonteCarlo::Problem few = problem();
   few.kernels = 4;
   few.pairs_per_kernel = 320;
-  EXPECT_EQ(run_natively(monte_carlo_run(few, 32, cn::Level::x86_64_v2), 32),
-            run_natively(monte_carlo_run(problem(), 32, cn::Level::x86_64_v2), 32));
+  EXPECT_EQ(run_natively(monte_carlo_run(few, 32, cn::narrowest_level()), 32),
+            run_natively(monte_carlo_run(problem(), 32, cn::narrowest_level()), 32));
 }
 
 TEST(MonteCarloExample, LevelsGiveTheSameBits) {
-  const auto first = run_natively(monte_carlo_run(problem(), 96, cn::Level::x86_64_v2), 96);
-  for (const cn::Level level : levels())
+  const auto first = run_natively(monte_carlo_run(problem(), 96, cn::narrowest_level()), 96);
+  for (const cn::Level level : cn::usable_levels())
     EXPECT_EQ(run_natively(monte_carlo_run(problem(), 96, level), 96), first);
 }
 
 TEST(MonteCarloExample, CheckNoticesABiasOfTwoPercent) {
   MonteCarlo::Problem of = problem();
   of.kernels = 200;
-  const testbench::ExampleRun run = monte_carlo_run(of, 96, cn::Level::x86_64_v2);
+  const testbench::ExampleRun run = monte_carlo_run(of, 96, cn::narrowest_level());
   std::vector<std::uint8_t> mono = run_natively(run, 96);
   for (int pe = 0; pe < 96; ++pe) {
     double sum;

@@ -44,7 +44,7 @@ std::vector<double> output(const std::uint8_t* mono) {
 }
 
 void run_stream(cn::Machine& machine, Form form) {
-  Stream stream(machine, examples::kernels(cn::Level::x86_64_v2), kProblem);
+  Stream stream(machine, examples::kernels(cn::narrowest_level()), kProblem);
   if (form == Form::alone) return stream.run_alone();
   stream.run_with_threads();
 }

@@ -155,8 +155,8 @@ TEST(BrokenFirmware, KernelsThatReportNothingAreRefused) {
   const path_tracer::CameraRecord camera{{}, {}, {}, {}, 4, 4};
   machine.write_mono(layout.camera, camera);
   expect_parts(test_support::fault_of([&] {
-                 path_tracer::PathTracer(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), config,
-                                         layout, {0, 1})
+                 path_tracer::PathTracer(machine, path_tracer::kernels(cn::narrowest_level()), config, layout,
+                                         {0, 1})
                      .run({});
                }),
                {"kernel 'replace' is not built to report"});

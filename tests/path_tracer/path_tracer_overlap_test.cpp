@@ -92,8 +92,8 @@ template <class Machine>
 path_tracer::RunCounts trace(Machine& machine, const testbench::MonoImage& image,
                              const ProgramConfig& config) {
   std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
-  path_tracer::PathTracer tracer(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), config,
-                                 image.layout, {0, kSamples});
+  path_tracer::PathTracer tracer(machine, path_tracer::kernels(cn::narrowest_level()), config, image.layout,
+                                 {0, kSamples});
   tracer.run({});
   return tracer.counts();
 }

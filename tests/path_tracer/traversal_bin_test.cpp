@@ -172,7 +172,7 @@ class RayQueueTest : public testing::Test {
 
   ProgramConfig config;
   path_tracer::Layout layout;
-  path_tracer::Kernels kernels = path_tracer::kernels(path_tracer::Level::x86_64_v2);
+  path_tracer::Kernels kernels = path_tracer::kernels(cn::narrowest_level());
   std::optional<testbench::NativeMachine> machine;
   std::optional<TransferRing> saves;
   std::optional<RayQueue> queue;

@@ -92,11 +92,9 @@ std::vector<Variation> chip_variations() {
   for (const int pes : {16, 32, 96, 128, 256})
     variations.push_back(
         {std::to_string(pes) + " PEs", [=](RenderOptions& options) { options.chip.chip.pes = pes; }});
-  for (const Level level : {Level::x86_64_v2, Level::x86_64_v3, Level::x86_64_v4}) {
-    if (level > testbench::widest_level()) continue;
+  for (const Level level : cn::usable_levels())
     variations.push_back(
-        {"level v" + std::to_string(2 + int(level)), [=](RenderOptions& options) { options.level = level; }});
-  }
+        {"level " + cn::name_of(level), [=](RenderOptions& options) { options.level = level; }});
   for (const auto arbitration :
        {model::PioArbitration::strict_fifo, model::PioArbitration::reads_overtake_writes,
         model::PioArbitration::queue_per_direction}) {
@@ -227,9 +225,10 @@ TEST_F(Invariants, StatisticsRepeatByteForByte) {
     RenderOptions options = render_options(program, 24);
     const std::string first = statistics(options, on_chip(scene, options));
     EXPECT_EQ(statistics(options, on_chip(scene, options)), first);
-    if (testbench::widest_level() == Level::x86_64_v2) continue;
-    options.level = Level::x86_64_v2;
-    EXPECT_EQ(statistics(options, on_chip(scene, options)), first) << "at another x86-64 level";
+    for (const Level level : cn::usable_levels()) {
+      options.level = level;
+      EXPECT_EQ(statistics(options, on_chip(scene, options)), first) << "at level " << cn::name_of(level);
+    }
   }
 }
 

@@ -72,7 +72,7 @@ std::vector<Variation> variations() {
   for (const int visits : {0, 1})
     variations.push_back({std::to_string(visits) + " visits a turn",
                           [=](RenderOptions& o) { o.program.tree.visits = visits; }});
-  variations.push_back({"x86-64-v2", [](RenderOptions& o) { o.level = path_tracer::Level::x86_64_v2; }});
+  variations.push_back({"narrowest level", [](RenderOptions& o) { o.level = cn::narrowest_level(); }});
   variations.push_back({"lights by solid angle", [](RenderOptions& o) {
                           o.program.light_sampling = path_tracer::LightSampling::solid_angle;
                           o.program.sampler = path_tracer::Sampler::sobol;

@@ -18,14 +18,6 @@ inline std::vector<std::uint8_t> run_natively(const testbench::ExampleRun& run, 
   return {machine.mono(), machine.mono() + machine.mono_bytes()};
 }
 
-/// The levels this machine executes.
-inline std::vector<cn::Level> levels() {
-  std::vector<cn::Level> all = {cn::Level::x86_64_v2};
-  if (__builtin_cpu_supports("x86-64-v3")) all.push_back(cn::Level::x86_64_v3);
-  if (__builtin_cpu_supports("x86-64-v4")) all.push_back(cn::Level::x86_64_v4);
-  return all;
-}
-
 /// What `run.check` says of `mono`; empty when it is right.
 inline std::string verdict(const testbench::ExampleRun& run, const std::vector<std::uint8_t>& mono) {
   try {

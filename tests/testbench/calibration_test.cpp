@@ -115,7 +115,7 @@ TEST(Calibration, IsDeterministic) {
   const Calibration first = calibrate(smaller, small_options());
   CalibrationOptions others = small_options();
   others.at_once = 1;
-  others.level = path_tracer::Level::x86_64_v2;
+  others.level = cn::narrowest_level();
   const Calibration second = calibrate(smaller, others);
   EXPECT_EQ(second.constants.settings(), first.constants.settings());
   EXPECT_EQ(second.seconds, first.seconds);

@@ -55,8 +55,7 @@ bool fits(const ProgramConfig& program) {
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 64}, kChip.chip.pes, program);
   testbench::NativeMachine machine(kChip.chip.pes, kChip.poly.sram_bytes, layout.total_bytes);
   try {
-    path_tracer::PathTracer(machine, path_tracer::kernels(path_tracer::Level::x86_64_v2), program, layout,
-                            {});
+    path_tracer::PathTracer(machine, path_tracer::kernels(cn::narrowest_level()), program, layout, {});
   } catch (const std::exception&) {
     return false;
   }

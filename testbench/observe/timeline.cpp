@@ -8,7 +8,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kBufferBytes = 64 * 1024;
 constexpr double kPicosecondsPerMicrosecond = 1e6;
 constexpr int kProcess = 1;  // of the format's: the chip
 
@@ -104,7 +103,7 @@ void Timeline::add(Track track, const std::string& name, const char* category, m
 void Timeline::write(const Json& event) {
   if (!std::exchange(first_, false)) buffer_ += ",\n";
   buffer_ += event.dump();
-  if (buffer_.size() < kBufferBytes) return;
+  if (buffer_.size() < kWriteBufferBytes) return;
   file_.write(buffer_);
   buffer_.clear();
 }

@@ -9,8 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kBufferBytes = 64 * 1024;
-
 }  // namespace
 
 TransactionLog::TransactionLog(const std::filesystem::path& file, const model::Csx600& chip)
@@ -74,7 +72,7 @@ void TransactionLog::ended_transfer(bool upload, std::uint64_t bytes, model::Cyc
 void TransactionLog::write_line(const std::string& line) {
   buffer_ += line;
   buffer_ += '\n';
-  if (buffer_.size() < kBufferBytes) return;
+  if (buffer_.size() < kWriteBufferBytes) return;
   file_.write(buffer_);
   buffer_.clear();
 }

@@ -18,14 +18,10 @@ namespace {
 
 constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& where, const std::string& found,
-                       const std::string& allowed) {
+[[noreturn]] void fail_in_gltf(const std::filesystem::path& file, const std::string& where,
+                               const std::string& found, const std::string& allowed) {
   throw InputError(file.string() + ": " + (where.empty() ? "" : where + ": ") + "found " + found +
                    "; allowed: " + allowed);
-}
-
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find_first_of("\r\n"));
 }
 
 /// Images are not decoded: textures are refused where a material names one.
@@ -34,7 +30,7 @@ bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, co
   return true;
 }
 
-tinygltf::Model parse(const std::filesystem::path& file) {
+tinygltf::Model parse_gltf(const std::filesystem::path& file) {
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(leave_image, nullptr);
   tinygltf::Model model;
@@ -42,7 +38,7 @@ tinygltf::Model parse(const std::filesystem::path& file) {
   std::string warning;
   std::error_code status;
   if (!std::filesystem::is_regular_file(file, status))
-    fail(file, "", "no file that can be read", "a .gltf or .glb file");
+    fail_in_gltf(file, "", "no file that can be read", "a .gltf or .glb file");
   bool parsed = false;
   try {
     parsed = file.extension() == ".glb" ? parser.LoadBinaryFromFile(&model, &error, &warning, file.string())
@@ -51,11 +47,11 @@ tinygltf::Model parse(const std::filesystem::path& file) {
     error = thrown.what();
   }
   if (!parsed)
-    fail(file, "", error.empty() ? "something that is no glTF" : "'" + first_line(error) + "'",
-         "a valid glTF 2.0 file");
+    fail_in_gltf(file, "", error.empty() ? "something that is no glTF" : "'" + first_line(error) + "'",
+                 "a valid glTF 2.0 file");
   for (const std::string& extension : model.extensionsRequired)
     if (extension != kEmissiveStrength)
-      fail(file, "extensionsRequired", extension, std::string("none but ") + kEmissiveStrength);
+      fail_in_gltf(file, "extensionsRequired", extension, std::string("none but ") + kEmissiveStrength);
   return model;
 }
 
@@ -67,7 +63,7 @@ Material material_of(const std::filesystem::path& file, const tinygltf::Material
   const std::string where = named("material", index, source.name);
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   if (pbr.baseColorTexture.index >= 0 || source.emissiveTexture.index >= 0)
-    fail(file, where, "a texture", "colours only (baseColorFactor, emissiveFactor)");
+    fail_in_gltf(file, where, "a texture", "colours only (baseColorFactor, emissiveFactor)");
   double strength = 1.0;
   const auto extension = source.extensions.find(kEmissiveStrength);
   if (extension != source.extensions.end() && extension->second.Has("emissiveStrength"))
@@ -78,9 +74,9 @@ Material material_of(const std::filesystem::path& file, const tinygltf::Material
     const double reflectance = pbr.baseColorFactor[std::size_t(channel)];
     const double emission = source.emissiveFactor[std::size_t(channel)] * strength;
     if (!(reflectance >= 0.0 && reflectance <= 1.0))
-      fail(file, where, "a baseColorFactor of " + std::to_string(reflectance), "0 to 1");
+      fail_in_gltf(file, where, "a baseColorFactor of " + std::to_string(reflectance), "0 to 1");
     if (!(emission >= 0.0 && emission <= kMaxEmission))
-      fail(file, where, "an emission of " + std::to_string(emission), "0 to 1e12");
+      fail_in_gltf(file, where, "an emission of " + std::to_string(emission), "0 to 1e12");
     material.reflectance[channel] = reflectance;
     material.emission[channel] = emission;
   }
@@ -125,8 +121,9 @@ class Collector {
   void collect() {
     for (const int root : roots()) add_node(root, glm::dmat4(1.0));
     if (result_.mesh.triangles.empty())
-      fail(file_, "", "no triangle (" + std::to_string(result_.mesh.degenerate_triangles) + " without area)",
-           "one triangle or more");
+      fail_in_gltf(file_, "",
+                   "no triangle (" + std::to_string(result_.mesh.degenerate_triangles) + " without area)",
+                   "one triangle or more");
     keep_used_materials(materials_, result_.mesh);
   }
 
@@ -149,8 +146,8 @@ class Collector {
 
   void require_index(int index, std::size_t size, const std::string& what) const {
     if (index < 0 || std::size_t(index) >= size)
-      fail(file_, "", what + " " + std::to_string(index),
-           size == 0 ? "none, the file holds no " + what : "0 to " + std::to_string(size - 1));
+      fail_in_gltf(file_, "", what + " " + std::to_string(index),
+                   size == 0 ? "none, the file holds no " + what : "0 to " + std::to_string(size - 1));
   }
 
   /// Deep chains of nodes are walked with a stack of our own: a file may hold more than the machine's has
@@ -163,8 +160,8 @@ class Collector {
       require_index(index, model_.nodes.size(), "node");
       const tinygltf::Node& node = model_.nodes[std::size_t(index)];
       if (visited_[std::size_t(index)])
-        fail(file_, named("node", std::size_t(index), node.name), "a second way to it",
-             "a tree: one parent at most, and no node below itself");
+        fail_in_gltf(file_, named("node", std::size_t(index), node.name), "a second way to it",
+                     "a tree: one parent at most, and no node below itself");
       visited_[std::size_t(index)] = true;
       const glm::dmat4 transform = of_parent * transform_of(node);
       if (node.mesh >= 0) add_mesh(node.mesh, transform);
@@ -186,7 +183,7 @@ class Collector {
                      const std::string& where) {
     if (primitive.material >= 0) require_index(primitive.material, model_.materials.size(), "material");
     const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end()) fail(file_, where, "no POSITION", "one");
+    if (position == primitive.attributes.end()) fail_in_gltf(file_, where, "no POSITION", "one");
     const GltfAccessor vertices(file_, model_, position->second, where + ", POSITION");
     std::optional<GltfAccessor> indices;
     if (primitive.indices >= 0) indices.emplace(file_, model_, primitive.indices, where + ", indices");
@@ -207,7 +204,7 @@ class Collector {
 
   void add_triangle(const Triangle& triangle, const std::string& where) {
     if (!is_in_range(triangle))
-      fail(file_, where, "a coordinate that is no number or too large", "numbers of at most 1e100");
+      fail_in_gltf(file_, where, "a coordinate that is no number or too large", "numbers of at most 1e100");
     if (is_degenerate(triangle)) {
       ++result_.mesh.degenerate_triangles;
     } else {
@@ -220,13 +217,13 @@ class Collector {
     require_index(index, model_.cameras.size(), "camera");
     const tinygltf::Camera& source = model_.cameras[std::size_t(index)];
     const std::string where = named("camera", std::size_t(index), source.name);
-    if (source.type != "perspective") fail(file_, where, "type " + source.type, "perspective");
+    if (source.type != "perspective") fail_in_gltf(file_, where, "type " + source.type, "perspective");
     const double angle = source.perspective.yfov;
     if (!(angle > 0.0 && angle < glm::pi<double>()))
-      fail(file_, where, "a yfov of " + std::to_string(angle), "0 to pi, both excluded");
+      fail_in_gltf(file_, where, "a yfov of " + std::to_string(angle), "0 to pi, both excluded");
     const glm::dmat3 axes(transform);
     if (!(std::abs(glm::determinant(axes)) > 0.0))
-      fail(file_, where, "a transform without volume", "one with");
+      fail_in_gltf(file_, where, "a transform without volume", "one with");
     Camera camera;
     camera.position = glm::dvec3(transform[3]);
     camera.direction = glm::normalize(-axes[2]);
@@ -247,7 +244,7 @@ class Collector {
 }  // namespace
 
 GltfFile load_gltf(const std::filesystem::path& file) {
-  const tinygltf::Model model = parse(file);
+  const tinygltf::Model model = parse_gltf(file);
   GltfFile result;
   Collector(file, model, result).collect();
   return result;

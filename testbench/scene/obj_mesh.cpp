@@ -29,10 +29,6 @@ std::string read_text(const std::filesystem::path& file, const std::string& name
   return std::move(text).str();
 }
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find_first_of("\r\n"));
-}
-
 /// Hands MTL files to tinyobjloader (which maps names to indices) and keeps their checked colours in the same
 /// order.
 class CheckedMaterialReader : public tinyobj::MaterialReader {

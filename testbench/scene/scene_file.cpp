@@ -186,7 +186,7 @@ std::filesystem::path scene_path(const std::filesystem::path& scene) {
   return file;
 }
 
-toml::table parse(const std::filesystem::path& file) {
+toml::table parse_toml(const std::filesystem::path& file) {
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
@@ -351,7 +351,7 @@ Scene gltf_scene(const std::filesystem::path& file) {
 Scene load_scene(const std::filesystem::path& path) {
   const std::filesystem::path file = scene_path(path);
   if (is_gltf(file)) return gltf_scene(file);
-  const toml::table root = parse(file);
+  const toml::table root = parse_toml(file);
   TableReader(file.string(), "", root).require_only({"camera", "film", "mesh"});
 
   Scene scene;

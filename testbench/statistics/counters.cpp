@@ -13,7 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using path_tracer::RunCounts;
-constexpr CounterKind kDerived = CounterKind::derived;
 
 std::uint64_t rays(const RenderResult& run) {
   return run.counts.segments + run.counts.shadow_rays;
@@ -80,9 +79,11 @@ const Counters<RenderResult>& run_counters() {
       {{"segments", "count", "path segments traced"},
        [](const Run& run) { return Json(run.counts.segments); }},
       {{"rays", "count", "segments and shadow rays"}, [](const Run& run) { return Json(rays(run)); }},
-      {{"rays_per_joule", "-", "rays by the energy of chip and DDR; null for a native run", kDerived},
+      {{"rays_per_joule", "-", "rays by the energy of chip and DDR; null for a native run",
+        CounterKind::derived},
        [](const Run& run) { return per_joule(run, rays(run)); }},
-      {{"segments_per_joule", "-", "segments by the energy of chip and DDR; null for a native run", kDerived},
+      {{"segments_per_joule", "-", "segments by the energy of chip and DDR; null for a native run",
+        CounterKind::derived},
        [](const Run& run) { return per_joule(run, run.counts.segments); }},
       {{"host.cpu_seconds", "s", "of this machine, without loading and writing"},
        [](const Run& run) { return Json(run.cpu_seconds); }},
@@ -90,7 +91,7 @@ const Counters<RenderResult>& run_counters() {
        [](const Run& run) { return Json(run.wall_seconds); }},
       {{"host.peak_bytes", "bytes", "memory of the process at most"},
        [](const Run&) { return Json(peak_bytes()); }},
-      {{"host.segments_per_cpu_second", "-", "how fast the model renders", kDerived},
+      {{"host.segments_per_cpu_second", "-", "how fast the model renders", CounterKind::derived},
        [](const Run& run) { return Json(double(run.counts.segments) / run.cpu_seconds); }}};
   return counters;
 }
@@ -109,7 +110,8 @@ const Counters<RunCounts>& firmware_counters() {
        [](const RunCounts& c) { return Json(c.skipped_blocks); }},
       {{"steps", "count", "stages run on a block"}, [](const RunCounts& c) { return Json(c.steps); }},
       {{"paths_by_segments.*", "count", "paths that ended with so many segments"}, paths_by_segments},
-      {{"paths_alive_by_segment.*", "count", "paths that traced a first, second, ... segment", kDerived},
+      {{"paths_alive_by_segment.*", "count", "paths that traced a first, second, ... segment",
+        CounterKind::derived},
        paths_alive},
       {{"passes", "count", "times that all live blocks went through the bins"},
        [](const RunCounts& c) { return Json(c.rays.passes()); }},
@@ -160,7 +162,7 @@ std::string describe_counters() {
   std::ostringstream out;
   for (const Counter& counter : all_counters())
     out << std::left << std::setw(int(key_width) + 2) << counter.key << std::setw(11) << counter.unit
-        << counter.meaning << (counter.kind == kDerived ? " (derived)" : "") << '\n';
+        << counter.meaning << (counter.kind == CounterKind::derived ? " (derived)" : "") << '\n';
   return out.str();
 }
 

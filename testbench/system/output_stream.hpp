@@ -9,6 +9,9 @@
 
 namespace testbench {
 
+/// Those who write many short lines collect so much before they hand it on.
+inline constexpr std::size_t kWriteBufferBytes = 64 * 1024;
+
 /// A file that is written piece by piece while a chip runs. It has a temporary name until finish(); without
 /// it, nothing is left.
 class OutputStream {

@@ -102,6 +102,13 @@ struct RecallArguments {
   LaneMask* hit_something = nullptr;
 };
 
+/// Bits of the greatest of `numbers` numbers from 0 on.
+inline int bits_of(int numbers) {
+  int bits = 0;
+  while (((numbers - 1) >> bits) > 0) ++bits;
+  return bits;
+}
+
 /// The least value that a PE holds, for the control unit (cn::keep_least).
 struct LeastArguments {
   PolyField<std::int32_t> value;

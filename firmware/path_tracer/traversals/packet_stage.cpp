@@ -20,12 +20,6 @@ constexpr int sort_comparisons(int width) {
 }
 static_assert(sort_comparisons(8) == 19);
 
-int bits_of(int numbers) {
-  int bits = 0;
-  while (((numbers - 1) >> bits) > 0) ++bits;
-  return bits;
-}
-
 }  // namespace
 
 PacketStage::PacketStage(const StageContext& context, TreeContext& tree)

@@ -9,12 +9,6 @@ namespace {
 constexpr std::uint64_t kAppendInstructions = 60;
 constexpr std::uint64_t kTakeInstructions = 60;
 
-int bits_of(int numbers) {
-  int bits = 0;
-  while (((numbers - 1) >> bits) > 0) ++bits;
-  return bits;
-}
-
 }  // namespace
 
 SharedTreeletContext::SharedTreeletContext(cn::Machine& machine, const ProgramConfig& config,

@@ -12,7 +12,6 @@ namespace {
 using examples::Complex;
 using examples::Fft;
 using examples::kFftSize;
-using test_support::levels;
 using test_support::run_natively;
 using test_support::verdict;
 using testbench::fft_run;

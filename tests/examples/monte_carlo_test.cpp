@@ -7,7 +7,6 @@
 namespace {
 
 using examples::MonteCarlo;
-using test_support::levels;
 using test_support::run_natively;
 using test_support::verdict;
 using testbench::monte_carlo_run;

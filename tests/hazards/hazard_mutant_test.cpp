@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/hazards/hazard_mutant.hpp"
 #include "tests/support/checked_firmware.hpp"
 #include "tests/support/hazards.hpp"
 
@@ -12,10 +13,11 @@ namespace {
 using path_tracer::Program;
 using path_tracer::ProgramConfig;
 using path_tracer::Traversal;
+using test_support::kHazardMutant;
 
 std::vector<std::string> expected_parts() {
   std::vector<std::string> parts{"hazard", "kernel '", "request ", " bytes, ", "semaphore '"};
-  std::istringstream text(MUTANT_EXPECTED);
+  std::istringstream text(kHazardMutant.expected);
   for (std::string part; std::getline(text, part, '|');) parts.push_back(part);
   return parts;
 }
@@ -37,7 +39,7 @@ std::string fault_of(const testbench::Scene& scene, const ProgramConfig& config)
 
 std::vector<Traversal> traversals() {
   using test_support::kTreeTraversals;
-  if (MUTANT_OF_TREE) return {std::begin(kTreeTraversals), std::end(kTreeTraversals)};
+  if (kHazardMutant.of_tree) return {std::begin(kTreeTraversals), std::end(kTreeTraversals)};
   return {Traversal::brute_force};
 }
 
@@ -60,9 +62,9 @@ TEST(Mutant, IsStopped) {
         for (const int n : {0, 1, 3, 8})
           for (const int blocks : {1, 2, 4, 8})
             try_one(scene, test_support::checked_program(program, traversal, n, blocks));
-  EXPECT_FALSE(stopped.empty()) << MUTANT << " was never noticed";
-  EXPECT_FALSE(as_expected.empty()) << MUTANT << " was not noticed as " << MUTANT_EXPECTED << ", but as "
-                                    << (stopped.empty() ? "nothing" : *stopped.begin());
+  EXPECT_FALSE(stopped.empty()) << kHazardMutant.name << " was never noticed";
+  EXPECT_FALSE(as_expected.empty()) << kHazardMutant.name << " was not noticed as " << kHazardMutant.expected
+                                    << ", but as " << (stopped.empty() ? "nothing" : *stopped.begin());
   std::printf("%zu different messages, %zu as expected", stopped.size(), as_expected.size());
   std::printf(", such as: %s\n", as_expected.empty() ? "none" : as_expected.begin()->c_str());
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "firmware/cn/simd/level.hpp"
 #include "tests/support/command_line.hpp"
 
 namespace {

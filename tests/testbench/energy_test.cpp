@@ -1,4 +1,5 @@
 #include "testbench/statistics/energy.hpp"
+#include "model/csx600.hpp"
 
 #include <gtest/gtest.h>
 

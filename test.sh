@@ -5,4 +5,6 @@ cd "$(dirname "$0")"
 source .ci/prepare.sh
 
 prepare_build release all
+print_time "Built"
+trap 'print_time "Tests"' EXIT
 ctest --preset release --parallel "$(nproc)" "$@"

@@ -31,9 +31,15 @@ install_missing_packages() {
     > /dev/null
 }
 
-# prepare_build PRESET TARGET: packages, configuration, build. Quick when nothing changed.
+# prepare_build PRESET TARGET: packages, configuration, build. Quick when nothing changed. The environment's CSX600_LEVELS
+# says which levels of x86-64 kernels are built for (firmware/levels.cmake).
 prepare_build() {
   install_missing_packages
-  [ -f "build/$1/build.ninja" ] || cmake --preset "$1" > /dev/null
+  [ -f "build/$1/build.ninja" ] || cmake --preset "$1" ${CSX600_LEVELS:+-DCSX600_LEVELS="$CSX600_LEVELS"} > /dev/null
   cmake --build --preset "$1" --target "$2"
+}
+
+# print_time WHAT: since the script began.
+print_time() {
+  printf '%s: %d min %02d s since the start\n' "$1" $((SECONDS / 60)) $((SECONDS % 60))
 }

@@ -3,8 +3,9 @@
 namespace model {
 namespace {
 
-std::unique_ptr<Agenda> agenda_for(TimingStyle timing, const ClockDomain& clock) {
-  return timing == TimingStyle::approximately_timed ? std::make_unique<Agenda>("agenda", clock) : nullptr;
+std::unique_ptr<EventQueue> event_queue_for(TimingStyle timing, const ClockDomain& clock) {
+  return timing == TimingStyle::approximately_timed ? std::make_unique<EventQueue>("event_queue", clock)
+                                                    : nullptr;
 }
 
 }  // namespace
@@ -14,20 +15,21 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
     : sc_module(name),
       config_(config),
       clock(config.chip.clock_hz),
-      agenda(agenda_for(timing, clock)),
+      event_queue(event_queue_for(timing, clock)),
       pe_array("pe_array", config_),
-      control_unit("control_unit", config_, clock, pe_array, agenda.get()),
+      control_unit("control_unit", config_, clock, pe_array, event_queue.get()),
       poly_sram("poly_sram", config_, control_unit.poly_memory()),
-      dma_engine("dma_engine", config_, clock, control_unit.poly_memory(), agenda.get()),
-      clear_connect("clear_connect", config_, clock, agenda.get()),
-      mono_ddr(memory == MonoMemory::ddr ? std::make_unique<MonoDdr>("mono_ddr", config_, clock, agenda.get())
-                                         : nullptr),
-      host_link("host_link", config_, agenda.get()) {
-  control_unit.pio.bind(dma_engine.port);
+      pio_engine("pio_engine", config_, clock, control_unit.poly_memory(), event_queue.get()),
+      clear_connect("clear_connect", config_, clock, event_queue.get()),
+      mono_ddr(memory == MonoMemory::ddr
+                   ? std::make_unique<MonoDdr>("mono_ddr", config_, clock, event_queue.get())
+                   : nullptr),
+      host_link("host_link", config_, event_queue.get()) {
+  control_unit.pio.bind(pio_engine.port);
   control_unit.mono_socket.bind(clear_connect.control_socket);
-  dma_engine.semaphores.bind(control_unit.semaphores);
-  dma_engine.mono_socket.bind(clear_connect.pio_socket);
-  dma_engine.poly_socket.bind(poly_sram.pio_socket);
+  pio_engine.semaphores.bind(control_unit.semaphores);
+  pio_engine.mono_socket.bind(clear_connect.pio_socket);
+  pio_engine.poly_socket.bind(poly_sram.pio_socket);
   host_link.socket.bind(clear_connect.host_socket);
   clear_connect.host_traffic.bind(host_link.traffic);
   control_unit.host_traffic.bind(host_link.traffic);

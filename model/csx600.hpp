@@ -7,12 +7,12 @@
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
 #include "model/control/control_unit.hpp"
-#include "model/dma/dma_engine.hpp"
 #include "model/host_link/host_link.hpp"
 #include "model/memory/mono_ddr.hpp"
 #include "model/network/clear_connect.hpp"
 #include "model/pe_array/pe_array.hpp"
 #include "model/pe_array/poly_sram.hpp"
+#include "model/pio/pio_engine.hpp"
 #include "model/time/clock_domain.hpp"
 
 namespace model {
@@ -25,7 +25,7 @@ enum class MonoMemory : std::uint8_t {
 
 /// One ClearSpeed CSX600 with its DDR2 and its link to the host.
 ///
-///   control_unit --port--> dma_engine --+
+///   control_unit --port--> pio_engine --+
 ///        |                     |        +--> clear_connect --> mono_ddr
 ///     pe_array <-- poly_sram <-+        |
 ///        control_unit (data cache) -----+
@@ -40,11 +40,11 @@ class Csx600 : public sc_core::sc_module {
 
  public:
   const ClockDomain clock;
-  const std::unique_ptr<Agenda> agenda;  ///< approximately timed only
+  const std::unique_ptr<EventQueue> event_queue;  ///< approximately timed only
   PeArray pe_array;
   ControlUnit control_unit;
   PolySram poly_sram;
-  DmaEngine dma_engine;
+  PioEngine pio_engine;
   ClearConnect clear_connect;
   const std::unique_ptr<MonoDdr> mono_ddr;  ///< none if the memory is bound outside
   HostLink host_link;

@@ -9,7 +9,7 @@
 namespace model {
 
 ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config,
-                         const ClockDomain& clock, PeArray& pe_array, Agenda* agenda)
+                         const ClockDomain& clock, PeArray& pe_array, EventQueue* event_queue)
     : sc_module(name),
       Machine(config.chip.pes, config.poly.sram_bytes),
       config_(config),
@@ -22,8 +22,8 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       line_(std::size_t(config.control.cache_line_bytes)) {
   semaphores.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &ControlUnit::forget_mono_pointer);
-  if (agenda != nullptr) {
-    at_transport_ = std::make_unique<AtTransport>(*agenda, mono_socket);
+  if (event_queue != nullptr) {
+    at_transport_ = std::make_unique<AtTransport>(*event_queue, mono_socket);
     mono_socket.register_nb_transport_bw(this, &ControlUnit::nb_transport_bw);
   }
   SC_HAS_PROCESS(ControlUnit);

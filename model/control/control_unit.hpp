@@ -15,12 +15,12 @@
 #include "model/control/semaphore_file.hpp"
 #include "model/control/thread_scheduler.hpp"
 #include "model/control/wait_record.hpp"
-#include "model/dma/pio_port.hpp"
 #include "model/memory/mono_window.hpp"
 #include "model/network/host_traffic.hpp"
 #include "model/observe/control_observer.hpp"
 #include "model/pe_array/pe_array.hpp"
 #include "model/pe_array/stolen_cycles.hpp"
+#include "model/pio/pio_port.hpp"
 #include "model/time/clock_domain.hpp"
 #include "model/transaction/at_transport.hpp"
 
@@ -28,7 +28,7 @@ namespace model {
 
 /// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on a SystemC process
 /// and runs ahead by a local cycle count; it synchronises with SystemC time where the host can see it
-/// (semaphores shared with the host, the end) and wherever an observer asks for it. With an agenda it is
+/// (semaphores shared with the host, the end) and wherever an observer asks for it. With an event queue it is
 /// approximately timed: the PIO port lets time pass at each request, semaphore wait and kernel end, and mono
 /// accesses are transactions of four phases.
 ///
@@ -47,7 +47,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   using Firmware = std::function<void(cn::Machine&)>;
 
   ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-              PeArray& pe_array, Agenda* agenda = nullptr);
+              PeArray& pe_array, EventQueue* event_queue = nullptr);
 
   /// What runs from `start()` on.
   void load(Firmware firmware) { firmware_ = std::move(firmware); }

@@ -9,12 +9,12 @@
 
 namespace model {
 
-HostLink::HostLink(const sc_core::sc_module_name& name, const ChipConfig& config, Agenda* agenda)
-    : sc_module(name), clock_(config.chip.clock_hz), timing_(config), agenda_(agenda) {
+HostLink::HostLink(const sc_core::sc_module_name& name, const ChipConfig& config, EventQueue* event_queue)
+    : sc_module(name), clock_(config.chip.clock_hz), timing_(config), event_queue_(event_queue) {
   traffic.bind(*this);
-  if (agenda_ == nullptr) return;
+  if (event_queue_ == nullptr) return;
   at_initiator_ = std::make_unique<AtInitiator>(
-      *agenda_, socket,
+      *event_queue_, socket,
       AtInitiator::Owner{[](auto&) {}, [this](auto& packet) { return take_response(packet); }});
   socket.register_nb_transport_bw(this, &HostLink::nb_transport_bw);
 }
@@ -44,11 +44,11 @@ Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, uns
       throw std::out_of_range("host link: " + std::to_string(bytes) + " bytes at mono address " +
                               std::to_string(address) + " do not fit mono memory");
     end += timing_.dma_cycles(dma_bytes);
-    ++statistics_.host_dmas;
+    ++statistics_.transfers;
     done += dma_bytes;
   }
   HostPackets packets(timing_, command, address, bytes, start);
-  if (agenda_ != nullptr) {
+  if (event_queue_ != nullptr) {
     end = wait_for_packets(packets, end);
   } else if (bytes > 0) {
     unbooked_.push_back(packets);
@@ -67,7 +67,7 @@ bool HostLink::move(tlm::tlm_command command, cn::MonoAddress address, unsigned 
 }
 
 bool HostLink::in_progress() const {
-  return agenda_ == nullptr && free_at_ > sc_core::sc_time_stamp();
+  return event_queue_ == nullptr && free_at_ > sc_core::sc_time_stamp();
 }
 
 void HostLink::book_until(Cycles cycle) {
@@ -102,14 +102,14 @@ Cycles HostLink::wait_for_packets(HostPackets& packets, Cycles link_end) {
   send_due();
   while (!packets.at_end() || on_the_way_ > 0) wait(answered_);
   sending_ = nullptr;
-  return std::max(link_end, agenda_->now());
+  return std::max(link_end, event_queue_->now());
 }
 
 void HostLink::send_due() {
   while (sending_ != nullptr && !sending_->at_end() && !send_asked_ && on_the_way_ < kOutstandingPackets) {
-    if (sending_->due() > agenda_->now()) {
+    if (sending_->due() > event_queue_->now()) {
       send_asked_ = true;
-      agenda_->at(sending_->due(), [this] {
+      event_queue_->schedule(sending_->due(), [this] {
         send_asked_ = false;
         send_due();
       });
@@ -126,7 +126,7 @@ Cycles HostLink::take_response(tlm::tlm_generic_payload& packet) {
   packet.release();
   send_due();
   answered_.notify(sc_core::SC_ZERO_TIME);
-  return agenda_->now();
+  return event_queue_->now();
 }
 
 tlm::tlm_sync_enum HostLink::nb_transport_bw(tlm::tlm_generic_payload& packet, tlm::tlm_phase& phase,

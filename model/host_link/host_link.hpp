@@ -20,8 +20,9 @@ namespace model {
 /// their packets contend on the chip's network with those of the PIO engine and the control unit.
 ///
 /// Loosely timed: a transfer's end is that of the link itself, since the link is far narrower than the
-/// network; its packets only hold up others (HostTraffic). Approximately timed, with an agenda: the calling
-/// process waits, and the transfer ends with the link or with the memory's last response, whichever is later.
+/// network; its packets only hold up others (HostTraffic). Approximately timed, with an event queue: the
+/// calling process waits, and the transfer ends with the link or with the memory's last response, whichever
+/// is later.
 class HostLink : public sc_core::sc_module, public HostTraffic {
  public:
   static constexpr std::uint64_t kMaxDmaBytes = HostLinkTiming::kMaxDmaBytes;
@@ -31,7 +32,7 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   tlm_utils::simple_initiator_socket<HostLink> socket{"socket"};
   sc_core::sc_export<HostTraffic> traffic{"traffic"};
 
-  HostLink(const sc_core::sc_module_name& name, const ChipConfig& config, Agenda* agenda = nullptr);
+  HostLink(const sc_core::sc_module_name& name, const ChipConfig& config, EventQueue* event_queue = nullptr);
 
   /// Returns the cycle at which the last byte is there; the caller waits. Throws std::out_of_range when mono
   /// memory does not take all bytes.
@@ -66,7 +67,7 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   PayloadPool pool_;
   std::vector<HostPackets> unbooked_;  ///< transfers, in order
 
-  Agenda* agenda_;
+  EventQueue* event_queue_;
   std::unique_ptr<AtInitiator> at_initiator_;
   HostPackets* sending_ = nullptr;
   std::size_t on_the_way_ = 0;

@@ -7,7 +7,7 @@ namespace model {
 struct HostLinkStatistics {
   std::uint64_t bytes_uploaded = 0;
   std::uint64_t bytes_downloaded = 0;
-  std::uint64_t host_dmas = 0;
+  std::uint64_t transfers = 0;
   std::uint64_t busy_cycles = 0;
 };
 

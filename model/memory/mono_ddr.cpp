@@ -8,23 +8,24 @@
 namespace model {
 
 MonoDdr::MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-                 Agenda* agenda)
+                 EventQueue* event_queue)
     : sc_module(name),
       clock_(clock),
       timing_(config.ddr),
       memory_(config.ddr.size_bytes),
       dmi_latency_cycles_(Cycles(config.ddr.page_hit_cycles)),
-      agenda_(agenda),
+      event_queue_(event_queue),
       queue_transactions_(config.ddr.queue_transactions) {
   socket.register_b_transport(this, &MonoDdr::b_transport);
   socket.register_transport_dbg(this, &MonoDdr::transport_dbg);
   socket.register_get_direct_mem_ptr(this, &MonoDdr::get_direct_mem_ptr);
-  if (agenda_ == nullptr) return;
+  if (event_queue_ == nullptr) return;
   socket.register_nb_transport_fw(this, &MonoDdr::nb_transport_fw);
-  at_target_.emplace(*agenda_, AtTarget::Owner{[this](auto& transaction) { return take(transaction); },
-                                               [this](auto& transaction, auto& phase, auto& delay) {
-                                                 return socket->nb_transport_bw(transaction, phase, delay);
-                                               }});
+  at_target_.emplace(*event_queue_, AtTarget::Owner{[this](auto& transaction) { return take(transaction); },
+                                                    [this](auto& transaction, auto& phase, auto& delay) {
+                                                      return socket->nb_transport_bw(transaction, phase,
+                                                                                     delay);
+                                                    }});
 }
 
 void MonoDdr::b_transport(tlm::tlm_generic_payload& transaction, sc_core::sc_time& delay) {
@@ -45,13 +46,13 @@ tlm::tlm_sync_enum MonoDdr::nb_transport_fw(tlm::tlm_generic_payload& transactio
 }
 
 std::optional<Cycles> MonoDdr::take(tlm::tlm_generic_payload& transaction) {
-  const Cycles now = agenda_->now();
+  const Cycles now = event_queue_->now();
   Cycles over = now;
   transaction.set_dmi_allowed(true);
   transaction.set_response_status(transaction.get_command() == tlm::TLM_IGNORE_COMMAND
                                       ? tlm::TLM_OK_RESPONSE
                                       : access_plainly(transaction, now, over));
-  agenda_->at(over, [this, &transaction] { finish(transaction); });
+  event_queue_->schedule(over, [this, &transaction] { finish(transaction); });
   if (++queued_ < queue_transactions_) return now;
   not_accepted_ = &transaction;
   return std::nullopt;

@@ -8,8 +8,8 @@
 #include "model/config/chip_config.hpp"
 #include "model/memory/ddr_timing.hpp"
 #include "model/memory/lazy_memory.hpp"
-#include "model/time/agenda.hpp"
 #include "model/time/clock_domain.hpp"
+#include "model/time/event_queue.hpp"
 #include "model/transaction/at_target.hpp"
 #include "model/transaction/pe_addresses.hpp"
 
@@ -22,14 +22,15 @@ namespace model {
 /// A transaction with PeAddresses costs exactly what one transaction a run would, all sent with the same
 /// delay: the runs are booked one after the other from one arrival. The delay out is the end of the last.
 ///
-/// With an agenda it also speaks the four phases: it takes up to ddr.queue_transactions, ends the request of
-/// the last one when another is over, and begins the response of each in the cycle after its last byte.
+/// With an event queue it also speaks the four phases: it takes up to ddr.queue_transactions, ends the
+/// request of the last one when another is over, and begins the response of each in the cycle after its last
+/// byte.
 class MonoDdr : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<MonoDdr> socket{"socket"};
 
   MonoDdr(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-          Agenda* agenda = nullptr);
+          EventQueue* event_queue = nullptr);
 
   const DdrStatistics& statistics() const { return timing_.statistics(); }
   void set_observer(DdrObserver* observer, bool with_commands) {
@@ -60,7 +61,7 @@ class MonoDdr : public sc_core::sc_module {
   LazyMemory memory_;
   Cycles dmi_latency_cycles_;
 
-  Agenda* agenda_;
+  EventQueue* event_queue_;
   std::optional<AtTarget> at_target_;
   int queue_transactions_;
   int queued_ = 0;

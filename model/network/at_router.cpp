@@ -4,17 +4,17 @@
 
 namespace model {
 
-AtRouter::AtRouter(Agenda& agenda, ClearConnectTiming& timing, tlm::tlm_initiator_socket<>& memory,
+AtRouter::AtRouter(EventQueue& event_queue, ClearConnectTiming& timing, tlm::tlm_initiator_socket<>& memory,
                    const Backward& backward)
-    : agenda_(agenda),
+    : event_queue_(event_queue),
       timing_(timing),
-      memory_(agenda, memory, {[](auto&) {}, [this](auto& packet) { return pass_response(packet); }}) {
+      memory_(event_queue, memory, {[](auto&) {}, [this](auto& packet) { return pass_response(packet); }}) {
   for (int i = 0; i < int(kInitiators); ++i) {
     initiators_[std::size_t(i)].emplace(
-        agenda, AtTarget::Owner{[this, i](auto& packet) { return pass_request(Initiator(i), packet); },
-                                [backward, i](auto& packet, auto& phase, auto& delay) {
-                                  return backward(i, packet, phase, delay);
-                                }});
+        event_queue, AtTarget::Owner{[this, i](auto& packet) { return pass_request(Initiator(i), packet); },
+                                     [backward, i](auto& packet, auto& phase, auto& delay) {
+                                       return backward(i, packet, phase, delay);
+                                     }});
   }
 }
 
@@ -25,7 +25,7 @@ AtRouter::Route& AtRouter::route_of(tlm::tlm_generic_payload& packet) {
 }
 
 Cycles AtRouter::pass_request(Initiator initiator, tlm::tlm_generic_payload& packet) {
-  const Cycles now = agenda_.now();
+  const Cycles now = event_queue_.now();
   const std::uint64_t bytes = packet.get_data_length();
   const std::uint64_t packets = timing_.packets_for(bytes);
   const ClearConnectTiming::Passage passage = packet.is_write()
@@ -35,14 +35,14 @@ Cycles AtRouter::pass_request(Initiator initiator, tlm::tlm_generic_payload& pac
   route.initiator = initiator;
   route.sent_whole = passage.last;
   route.at_memory = passage.first;
-  agenda_.at(passage.first, [this, &packet] { memory_.send(packet); });
+  event_queue_.schedule(passage.first, [this, &packet] { memory_.send(packet); });
   return passage.sent;
 }
 
 /// A memory begins its response when it has sent the last byte; take it to have sent at full width.
 Cycles AtRouter::pass_response(tlm::tlm_generic_payload& packet) {
   const Route& route = route_of(packet);
-  const Cycles now = agenda_.now();
+  const Cycles now = event_queue_.now();
   Cycles there = std::max(now, route.sent_whole);
   Cycles port_free = now;
   if (packet.is_read() && packet.is_response_ok()) {
@@ -52,8 +52,8 @@ Cycles AtRouter::pass_response(tlm::tlm_generic_payload& packet) {
     there = timing_.backward(route.initiator, bytes, timing_.packets_for(bytes), first, now);
     port_free = std::max(now, timing_.backward_port_free());
   }
-  agenda_.at(there,
-             [this, &packet] { initiators_[std::size_t(route_of(packet).initiator)]->respond(packet); });
+  event_queue_.schedule(
+      there, [this, &packet] { initiators_[std::size_t(route_of(packet).initiator)]->respond(packet); });
   return port_free;
 }
 

@@ -7,7 +7,7 @@
 #include <tlm>
 
 #include "model/network/clear_connect_timing.hpp"
-#include "model/time/agenda.hpp"
+#include "model/time/event_queue.hpp"
 #include "model/transaction/at_initiator.hpp"
 #include "model/transaction/at_target.hpp"
 
@@ -28,7 +28,7 @@ class AtRouter {
   using Backward = std::function<tlm::tlm_sync_enum(int initiator, tlm::tlm_generic_payload&, tlm::tlm_phase&,
                                                     sc_core::sc_time&)>;
 
-  AtRouter(Agenda& agenda, ClearConnectTiming& timing, tlm::tlm_initiator_socket<>& memory,
+  AtRouter(EventQueue& event_queue, ClearConnectTiming& timing, tlm::tlm_initiator_socket<>& memory,
            const Backward& backward);
 
   tlm::tlm_sync_enum nb_transport_fw(int initiator, tlm::tlm_generic_payload& packet, tlm::tlm_phase& phase,
@@ -56,7 +56,7 @@ class AtRouter {
   Cycles pass_request(Initiator initiator, tlm::tlm_generic_payload& packet);
   Cycles pass_response(tlm::tlm_generic_payload& packet);
 
-  Agenda& agenda_;
+  EventQueue& event_queue_;
   ClearConnectTiming& timing_;
   AtInitiator memory_;
   std::array<std::optional<AtTarget>, kInitiators> initiators_;

@@ -8,13 +8,13 @@
 namespace model {
 
 ClearConnect::ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config,
-                           const ClockDomain& clock, Agenda* agenda)
+                           const ClockDomain& clock, EventQueue* event_queue)
     : sc_module(name),
       clock_(clock),
       port_bytes_per_cycle_(std::uint64_t(config.ddr.bytes_per_cycle)),
       timing_(config.clear_connect, config.ddr.bytes_per_cycle) {
-  if (agenda != nullptr)
-    at_router_.emplace(*agenda, timing_, ddr_socket,
+  if (event_queue != nullptr)
+    at_router_.emplace(*event_queue, timing_, ddr_socket,
                        [this](int initiator, auto& transaction, auto& phase, auto& delay) {
                          return answer(initiator, transaction, phase, delay);
                        });

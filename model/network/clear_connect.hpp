@@ -10,15 +10,15 @@
 #include "model/network/at_router.hpp"
 #include "model/network/clear_connect_timing.hpp"
 #include "model/network/host_traffic.hpp"
-#include "model/time/agenda.hpp"
 #include "model/time/clock_domain.hpp"
+#include "model/time/event_queue.hpp"
 
 namespace model {
 
 /// The on-chip network between three initiators and mono memory. A read goes out as request packets and comes
 /// back as data packets; a write is posted: its data packets go out, nothing comes back, and the delay out
 /// says when the memory has taken the last byte. Debug transport and DMI pass through. Any TLM-2.0 memory can
-/// be bound to ddr_socket. With an agenda it also passes on transactions in four phases (AtRouter).
+/// be bound to ddr_socket. With an event queue it also passes on transactions in four phases (AtRouter).
 class ClearConnect : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket_tagged<ClearConnect> pio_socket{"pio_socket"};
@@ -29,7 +29,7 @@ class ClearConnect : public sc_core::sc_module {
   HostTrafficPort host_traffic{"host_traffic"};
 
   ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-               Agenda* agenda = nullptr);
+               EventQueue* event_queue = nullptr);
 
   const ClearConnectStatistics& statistics(Initiator initiator) const {
     return timing_.statistics(initiator);

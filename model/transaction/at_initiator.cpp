@@ -12,11 +12,11 @@ bool AtInitiator::send(tlm::tlm_generic_payload& payload) {
   return false;
 }
 
-/// By way of the agenda, so that no request is sent from within a target's own call.
+/// By way of the event queue, so that no request is sent from within a target's own call.
 void AtInitiator::send_next() {
   if (send_asked_ || in_request_ != nullptr || waiting_.empty()) return;
   send_asked_ = true;
-  agenda_.at(agenda_.now(), [this] {
+  event_queue_.schedule(event_queue_.now(), [this] {
     send_asked_ = false;
     tlm::tlm_generic_payload& next = *waiting_.front();
     waiting_.erase(waiting_.begin());
@@ -35,32 +35,34 @@ void AtInitiator::begin_request(tlm::tlm_generic_payload& payload) {
     if (delay == sc_core::SC_ZERO_TIME) {
       end_request();
     } else {
-      agenda_.at(agenda_.cycle_after(delay), [this] { end_request(); });
+      event_queue_.schedule(event_queue_.cycle_after(delay), [this] { end_request(); });
     }
   } else if (answer == tlm::TLM_UPDATED) {
-    agenda_.at(agenda_.cycle_after(delay), [this, &payload] { take_delayed_response(payload); });
+    event_queue_.schedule(event_queue_.cycle_after(delay),
+                          [this, &payload] { take_delayed_response(payload); });
   } else {  // TLM_COMPLETED: the target skips all further phases
-    agenda_.at(agenda_.cycle_after(delay), [this, &payload] { take_response(payload); });
+    event_queue_.schedule(event_queue_.cycle_after(delay), [this, &payload] { take_response(payload); });
   }
 }
 
 tlm::tlm_sync_enum AtInitiator::nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                                 sc_core::sc_time& delay) {
   if (phase == tlm::END_REQ) {
-    agenda_.at(agenda_.cycle_after(delay), [this] { end_request(); });
+    event_queue_.schedule(event_queue_.cycle_after(delay), [this] { end_request(); });
     return tlm::TLM_ACCEPTED;
   }
   if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;  // an ignorable phase
   if (delay != sc_core::SC_ZERO_TIME) {
-    agenda_.at(agenda_.cycle_after(delay), [this, &payload] { take_delayed_response(payload); });
+    event_queue_.schedule(event_queue_.cycle_after(delay),
+                          [this, &payload] { take_delayed_response(payload); });
     return tlm::TLM_ACCEPTED;
   }
   payload.acquire();  // the owner may release it before the response is over
   in_call_of_target_ = true;
   const Cycles over = take_response(payload);
   in_call_of_target_ = false;
-  if (over > agenda_.now()) {
-    agenda_.at(over, [this, &payload] { end_response(payload); });
+  if (over > event_queue_.now()) {
+    event_queue_.schedule(over, [this, &payload] { end_response(payload); });
     return tlm::TLM_ACCEPTED;
   }
   payload.release();
@@ -80,7 +82,7 @@ Cycles AtInitiator::take_response(tlm::tlm_generic_payload& payload) {
 
 void AtInitiator::take_delayed_response(tlm::tlm_generic_payload& payload) {
   payload.acquire();
-  agenda_.at(take_response(payload), [this, &payload] { end_response(payload); });
+  event_queue_.schedule(take_response(payload), [this, &payload] { end_response(payload); });
 }
 
 void AtInitiator::end_response(tlm::tlm_generic_payload& payload) {

@@ -5,7 +5,7 @@
 #include <tlm>
 #include <vector>
 
-#include "model/time/agenda.hpp"
+#include "model/time/event_queue.hpp"
 
 namespace model {
 
@@ -23,8 +23,8 @@ class AtInitiator {
     std::function<Cycles(tlm::tlm_generic_payload&)> responded;
   };
 
-  AtInitiator(Agenda& agenda, tlm::tlm_initiator_socket<>& socket, Owner owner)
-      : agenda_(agenda), socket_(socket), owner_(std::move(owner)) {}
+  AtInitiator(EventQueue& event_queue, tlm::tlm_initiator_socket<>& socket, Owner owner)
+      : event_queue_(event_queue), socket_(socket), owner_(std::move(owner)) {}
   AtInitiator(const AtInitiator&) = delete;
   AtInitiator& operator=(const AtInitiator&) = delete;
 
@@ -47,7 +47,7 @@ class AtInitiator {
   void take_delayed_response(tlm::tlm_generic_payload& payload);
   void end_response(tlm::tlm_generic_payload& payload);
 
-  Agenda& agenda_;
+  EventQueue& event_queue_;
   tlm::tlm_initiator_socket<>& socket_;
   Owner owner_;
   std::vector<tlm::tlm_generic_payload*> waiting_;

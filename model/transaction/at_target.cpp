@@ -5,25 +5,26 @@ namespace model {
 tlm::tlm_sync_enum AtTarget::nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                              sc_core::sc_time& delay) {
   if (phase == tlm::END_RESP) {
-    agenda_.at(agenda_.cycle_after(delay), [this] { end_response(); });
+    event_queue_.schedule(event_queue_.cycle_after(delay), [this] { end_response(); });
     return tlm::TLM_COMPLETED;
   }
   if (phase != tlm::BEGIN_REQ) return tlm::TLM_ACCEPTED;  // an ignorable phase
   payload.acquire();
   if (delay != sc_core::SC_ZERO_TIME) {
-    agenda_.at(agenda_.cycle_after(delay), [this, &payload] { take_delayed_request(payload); });
+    event_queue_.schedule(event_queue_.cycle_after(delay),
+                          [this, &payload] { take_delayed_request(payload); });
     return tlm::TLM_ACCEPTED;
   }
   const std::optional<Cycles> accepted = owner_.requested(payload);
   if (!accepted) return tlm::TLM_ACCEPTED;
   phase = tlm::END_REQ;
-  delay = agenda_.delay_until(*accepted);
+  delay = event_queue_.delay_until(*accepted);
   return tlm::TLM_UPDATED;
 }
 
 void AtTarget::take_delayed_request(tlm::tlm_generic_payload& payload) {
   const std::optional<Cycles> accepted = owner_.requested(payload);
-  if (accepted) agenda_.at(*accepted, [this, &payload] { accept(payload); });
+  if (accepted) event_queue_.schedule(*accepted, [this, &payload] { accept(payload); });
 }
 
 void AtTarget::accept(tlm::tlm_generic_payload& payload) {
@@ -45,7 +46,7 @@ void AtTarget::begin_response() {
   if (delay == sc_core::SC_ZERO_TIME) {
     end_response();
   } else {
-    agenda_.at(agenda_.cycle_after(delay), [this] { end_response(); });
+    event_queue_.schedule(event_queue_.cycle_after(delay), [this] { end_response(); });
   }
 }
 

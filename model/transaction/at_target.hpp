@@ -6,7 +6,7 @@
 #include <tlm>
 #include <vector>
 
-#include "model/time/agenda.hpp"
+#include "model/time/event_queue.hpp"
 
 namespace model {
 
@@ -23,14 +23,14 @@ class AtTarget {
     std::function<tlm::tlm_sync_enum(tlm::tlm_generic_payload&, tlm::tlm_phase&, sc_core::sc_time&)> backward;
   };
 
-  AtTarget(Agenda& agenda, Owner owner) : agenda_(agenda), owner_(std::move(owner)) {}
+  AtTarget(EventQueue& event_queue, Owner owner) : event_queue_(event_queue), owner_(std::move(owner)) {}
   AtTarget(const AtTarget&) = delete;
   AtTarget& operator=(const AtTarget&) = delete;
 
   /// Ends the request, which was not ended when it began.
   void accept(tlm::tlm_generic_payload& payload);
-  /// Begins the response, or does so when the one before is over. From the agenda, not from within a call of
-  /// the initiator.
+  /// Begins the response, or does so when the one before is over. From the event queue, not from within a
+  /// call of the initiator.
   void respond(tlm::tlm_generic_payload& payload);
 
   /// What the module's socket passes on.
@@ -42,7 +42,7 @@ class AtTarget {
   void begin_response();
   void end_response();
 
-  Agenda& agenda_;
+  EventQueue& event_queue_;
   Owner owner_;
   std::vector<tlm::tlm_generic_payload*> responses_;  ///< that wait; the first may be on its way
   bool responding_ = false;

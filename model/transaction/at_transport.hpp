@@ -3,7 +3,7 @@
 #include <systemc>
 #include <tlm>
 
-#include "model/time/agenda.hpp"
+#include "model/time/event_queue.hpp"
 #include "model/transaction/at_initiator.hpp"
 
 namespace model {
@@ -12,13 +12,13 @@ namespace model {
 /// waits until it is over.
 class AtTransport {
  public:
-  AtTransport(Agenda& agenda, tlm::tlm_initiator_socket<>& socket)
-      : agenda_(agenda),
-        initiator_(agenda, socket,
+  AtTransport(EventQueue& event_queue, tlm::tlm_initiator_socket<>& socket)
+      : event_queue_(event_queue),
+        initiator_(event_queue, socket,
                    {[](auto&) {},
                     [this](auto&) {
                       over_.notify(sc_core::SC_ZERO_TIME);
-                      return agenda_.now();
+                      return event_queue_.now();
                     }}) {}
 
   /// Of a payload that is used here only. Returns when it is over.
@@ -26,9 +26,9 @@ class AtTransport {
     payload.set_mm(&keeper_);
     payload.acquire();
     initiator_.send(payload);
-    agenda_.pass_time_until(over_);
+    event_queue_.pass_time_until(over_);
     payload.release();
-    return agenda_.now();
+    return event_queue_.now();
   }
 
   /// What the module's socket passes on.
@@ -43,7 +43,7 @@ class AtTransport {
     void free(tlm::tlm_generic_payload*) override {}
   };
 
-  Agenda& agenda_;
+  EventQueue& event_queue_;
   AtInitiator initiator_;
   Keeper keeper_;
   sc_core::sc_event over_;

@@ -41,7 +41,7 @@ struct ValidateCommand {
 void add_validate_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand(
       "validate",
-      "Run DGEMM, Monte Carlo, FFT and DMA sweeps and print published figures beside the model's");
+      "Run DGEMM, Monte Carlo, FFT and PIO sweeps and print published figures beside the model's");
   const auto state = std::make_shared<ValidateCommand>();
   state->settings.add_to(command);
   state->level.add_to(command);

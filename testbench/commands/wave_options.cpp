@@ -138,7 +138,7 @@ void ObservationOption::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--transactions", transactions_,
-                  "Write a line of JSON for each DMA request and host transfer")
+                  "Write a line of JSON for each PIO request and host transfer")
       ->group(group);
   command
       .add_option("--timeline", timeline_,

@@ -34,7 +34,7 @@ Observation::Observation(const ObservationOptions& options, model::Csx600& chip)
   const bool only_waves = waves_ && !transactions_ && !timeline_;
   model::ChipObserver& observer = only_waves ? waves_->observer() : observers_;
   chip.control_unit.set_observer(&observer, kSyncCycles);
-  chip.dma_engine.set_observer(&observer);
+  chip.pio_engine.set_observer(&observer);
   chip.host_link.set_observer(&observer);
 }
 

@@ -41,8 +41,8 @@ void Timeline::name_tracks() {
   write({{"name", "process_name"}, {"ph", "M"}, {"pid", kProcess}, {"args", {{"name", "csx600"}}}});
   const std::pair<Track, const char*> tracks[] = {{Track::kernels, "kernels"},
                                                   {Track::waits, "control unit waits"},
-                                                  {Track::loads, "DMA loads (mono to poly)"},
-                                                  {Track::saves, "DMA saves (poly to mono)"},
+                                                  {Track::loads, "PIO loads (mono to poly)"},
+                                                  {Track::saves, "PIO saves (poly to mono)"},
                                                   {Track::host, "host transfers"}};
   for (const auto& [track, name] : tracks) {
     const Json place = {{"ph", "M"}, {"pid", kProcess}, {"tid", int(track)}};

@@ -23,7 +23,7 @@ function showFigures(run, chip) {
     [forPeople(run.simulated_cycles), "cycles"],
     [percent(chip.pe_utilisation), "of them kernels on the PE array"],
     [percent(chip.simd_efficiency), "SIMD efficiency"],
-    [percent(chip.exposed_pio_share), "waiting for DMA"],
+    [percent(chip.exposed_pio_share), "waiting for PIO"],
     [forPeople(chip.ddr_bytes_per_second, "B/s"), "to and from DDR"],
   ];
   if (chip.energy) figures.push([forPeople(chip.energy.joules, "J"), "energy"], [forPeople(run.rays_per_joule), "rays/J"]);

@@ -24,7 +24,7 @@ ChipStatistics collect_statistics(const model::Csx600& chip, model::Cycles total
   statistics.control = chip.control_unit.statistics();
   statistics.kernels = chip.pe_array.kernels();
   statistics.all_kernels = chip.pe_array.total();
-  statistics.pio = chip.dma_engine.statistics();
+  statistics.pio = chip.pio_engine.statistics();
   statistics.poly_sram = chip.poly_sram.statistics();
   statistics.ddr = chip.ddr_statistics();
   statistics.bus_pio = chip.clear_connect.statistics(model::Initiator::pio);

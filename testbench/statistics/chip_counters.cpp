@@ -157,8 +157,8 @@ Counters<Chip> unit_counters() {
        [](const Chip& c) { return Json(c.host_link.bytes_uploaded); }},
       {{"host_link.bytes_downloaded", "bytes", "from mono memory to the host"},
        [](const Chip& c) { return Json(c.host_link.bytes_downloaded); }},
-      {{"host_link.host_dmas", "count", "transfers of the host link"},
-       [](const Chip& c) { return Json(c.host_link.host_dmas); }},
+      {{"host_link.transfers", "count", "transfers of the host link"},
+       [](const Chip& c) { return Json(c.host_link.transfers); }},
       {{"host_link.busy_cycles", "cycles", "in which the host link transferred"},
        [](const Chip& c) { return Json(c.host_link.busy_cycles); }}};
 }

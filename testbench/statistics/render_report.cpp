@@ -81,7 +81,7 @@ void add_chip_rows(const RenderResult& result, Rows& rows) {
   rows.emplace_back("simulated segments/s", text("%.0f", double(result.counts.segments) / chip.seconds()));
   rows.emplace_back("PE utilisation", text("%.2f %%", 100 * chip.pe_utilisation()));
   rows.emplace_back("SIMD efficiency", text("%.2f %%", 100 * chip.simd_efficiency()));
-  rows.emplace_back("exposed DMA", text("%.2f %% of the time", 100 * chip.exposed_pio_share()));
+  rows.emplace_back("exposed PIO", text("%.2f %% of the time", 100 * chip.exposed_pio_share()));
   rows.emplace_back("DDR bandwidth", text("%.1f MB/s", chip.ddr_bytes_per_second() * 1e-6));
   add_energy_row(result, rows);
   add_roofline_row(chip, rows);

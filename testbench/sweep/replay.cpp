@@ -21,7 +21,7 @@ RenderResult replay_on_chip(const Recording& recording, const RenderOptions& opt
   Film nobody_looks_at(result.film.size(), result.film.scale());
   model::Csx600 chip("csx600", options.chip, options.timing);
   HostPc host("host", chip, recording.image, nobody_looks_at);
-  chip.dma_engine.leave_data(true);
+  chip.pio_engine.leave_data(true);
   chip.control_unit.load([&](cn::Machine& machine) { recording.stream.replay(machine); });
   try {
     sc_core::sc_start();

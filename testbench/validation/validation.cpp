@@ -4,8 +4,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "firmware/examples/dma_sweep.hpp"
 #include "firmware/examples/fft.hpp"
+#include "firmware/examples/pio_sweep.hpp"
 #include "model/csx600.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/processes.hpp"
@@ -15,7 +15,7 @@ namespace testbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using examples::DmaSweep;
+using examples::PioSweep;
 
 constexpr const char* kShipped = "csx600";
 constexpr const char* kDesign = "csx600_250mhz";
@@ -76,7 +76,7 @@ constexpr int kSweepOffsets[] = {0, 56};
 constexpr int kSweepRepeats = 16;
 
 /// Bytes a cycle when `repeats` transfers took so long.
-double rate(const DmaSweep::Pattern& pattern, int repeats, model::Cycles cycles) {
+double rate(const PioSweep::Pattern& pattern, int repeats, model::Cycles cycles) {
   return double(pattern.pes) * pattern.bytes * repeats / double(cycles);
 }
 
@@ -86,7 +86,7 @@ class SweepRun {
 
   std::string run() {
     chip_.run([this](cn::Machine& machine) {
-      DmaSweep sweep(machine, *std::max_element(std::begin(kSweepBytes), std::end(kSweepBytes)));
+      PioSweep sweep(machine, *std::max_element(std::begin(kSweepBytes), std::end(kSweepBytes)));
       for (const int pes : kSweepPes)
         for (const int bytes : kSweepBytes)
           for (const int offset : kSweepOffsets)
@@ -104,9 +104,9 @@ class SweepRun {
     return bytes;
   }
 
-  void measure(DmaSweep& sweep, int pes, int bytes, int offset) {
+  void measure(PioSweep& sweep, int pes, int bytes, int offset) {
     // Pieces lie apart, each at the same place within a packet.
-    DmaSweep::Pattern pattern{pes, bytes, std::uint64_t(offset), std::uint64_t(bytes / 64 + 2) * 64};
+    PioSweep::Pattern pattern{pes, bytes, std::uint64_t(offset), std::uint64_t(bytes / 64 + 2) * 64};
     const model::Cycles start = chip_.now();
     sweep.load(pattern, kSweepRepeats);
     const model::Cycles loaded = chip_.now();
@@ -121,11 +121,11 @@ class SweepRun {
                        {"save", rate(pattern, kSweepRepeats, saved - loaded) * config_.chip.clock_hz}});
   }
 
-  void check(const DmaSweep::Pattern& pattern) {
+  void check(const PioSweep::Pattern& pattern) {
     for (int pe = 0; pe < pattern.pes; ++pe) {
       std::uint8_t* const copy = chip_.mono() + pattern.address + std::uint64_t(pe) * pattern.stride_bytes;
       if (std::memcmp(copy, copy - kCopy, std::size_t(pattern.bytes)) != 0)
-        throw RunError("DMA sweep: the piece of PE " + std::to_string(pe) + " of " +
+        throw RunError("PIO sweep: the piece of PE " + std::to_string(pe) + " of " +
                        std::to_string(pattern.bytes) + " bytes came back changed");
       std::memset(copy, 0, std::size_t(pattern.bytes));
     }
@@ -150,7 +150,7 @@ const TransferPoint& transfer(const std::vector<TransferPoint>& points, int byte
   };
   // The most PEs come last.
   const auto found = std::find_if(points.rbegin(), points.rend(), is_it);
-  if (found == points.rend()) throw RunError("DMA sweep has no point of " + std::to_string(bytes) + " bytes");
+  if (found == points.rend()) throw RunError("PIO sweep has no point of " + std::to_string(bytes) + " bytes");
   return *found;
 }
 
@@ -204,7 +204,7 @@ std::vector<Job> make_jobs(cn::Level level) {
   };
   const auto sweep = [](const model::ChipConfig& chip) { return SweepRun(chip).run(); };
   return {{"DGEMM", kDesign, multiply},    {"DGEMM", kShipped, multiply},  {"Monte Carlo", kShipped, sample},
-          {"2-D FFT", kDesign, transform}, {"DMA sweep", kShipped, sweep}, {"DMA sweep", kDesign, sweep}};
+          {"2-D FFT", kDesign, transform}, {"PIO sweep", kShipped, sweep}, {"PIO sweep", kDesign, sweep}};
 }
 
 std::vector<Figure> make_figures(const std::vector<Json>& results,

@@ -96,7 +96,7 @@ TEST_P(HazardOnChip, OneDirectionFinishesInTheOrderOfItsStarts) {
     config.pio.arbitration = arbitration;
     config.pio.queue_depth = 8;
     build(config, GetParam());
-    chip->dma_engine.set_observer(&order);
+    chip->pio_engine.set_observer(&order);
     run_well([](Machine& machine) {
       const cn::Semaphore done = machine.allocate_semaphore("done");
       for (int i = 0; i < 4; ++i) {
@@ -118,7 +118,7 @@ TEST_P(HazardOnChip, RequestsHaveTheEnginesNumbers) {
     std::map<std::uint64_t, model::Cycles> enqueued;
   } ids;
   check();
-  chip->dma_engine.set_observer(&ids);
+  chip->pio_engine.set_observer(&ids);
   run([](Machine& machine) {
     const cn::Semaphore done = machine.allocate_semaphore("done");
     for (int i = 0; i < 3; ++i) {
@@ -132,7 +132,7 @@ TEST_P(HazardOnChip, RequestsHaveTheEnginesNumbers) {
     machine.issue_mono(7);
     machine.number_ascending(LaneMask::first(8), {8});
   });
-  if (GetParam() == TimingStyle::loosely_timed) chip->dma_engine.serve_next();
+  if (GetParam() == TimingStyle::loosely_timed) chip->pio_engine.serve_next();
   ASSERT_EQ(ids.enqueued.size(), 4u);
   expect_parts(fault(), {"request 3 (load", "started at cycle " + std::to_string(ids.enqueued.at(3)) + ","});
 }

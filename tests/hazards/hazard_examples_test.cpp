@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "firmware/examples/dgemm.hpp"
-#include "firmware/examples/dma_sweep.hpp"
 #include "firmware/examples/fft.hpp"
 #include "firmware/examples/monte_carlo.hpp"
+#include "firmware/examples/pio_sweep.hpp"
 #include "model/hazards/hazard_checker.hpp"
 #include "tests/support/broken_machine.hpp"
 #include "tests/support/hazards.hpp"
@@ -80,11 +80,11 @@ TEST(HazardsOfExamples, MonteCarlo) {
       96);
 }
 
-TEST(HazardsOfExamples, DmaSweep) {
+TEST(HazardsOfExamples, PioSweep) {
   expect_sound_and_every_wait_needed(
       [](cn::Machine& machine) {
-        examples::DmaSweep sweep(machine, 64);
-        const examples::DmaSweep::Pattern pattern{96, 64, 0, 64};
+        examples::PioSweep sweep(machine, 64);
+        const examples::PioSweep::Pattern pattern{96, 64, 0, 64};
         sweep.load(pattern, 3);
         sweep.save(pattern, 3);
       },

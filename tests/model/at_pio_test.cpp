@@ -201,7 +201,7 @@ TEST_F(AtPio, NoTransactionAllocatesOnceAllPayloadsExist) {
                 ? engine->enqueue(write(MonoPlaces::array(64 * std::uint64_t(i % 40), 32), 32, kAll, -1), now)
                 : engine->enqueue(read(MonoPlaces::array(96 * std::uint64_t(i % 40), 96), 32, kAll, -1), now);
       serve_all();
-      now = agenda->now();
+      now = event_queue->now();
     };
     requests(2000);
     const std::size_t before = allocations;
@@ -232,7 +232,7 @@ class BrokenMemory : public sc_core::sc_module {
 };
 
 TEST_F(AtPio, AnErrorOfTheMemoryReachesTheFirmware) {
-  agenda = std::make_unique<model::Agenda>("agenda", clock);
+  event_queue = std::make_unique<model::EventQueue>("event_queue", clock);
   prepare(test_chip());
   BrokenMemory broken("broken");
   network->ddr_socket.bind(at_memory.in);

@@ -106,7 +106,7 @@ TEST_F(ControlUnitHost, TransfersGoOnWhileTheControlUnitWaitsForTheHost) {
     machine.sem_wait(kFromHost);
     for (int i = 0; i < 3; ++i) machine.sem_wait(done);  // over long ago
   });
-  EXPECT_EQ(chip->dma_engine.statistics().late_starts, 0u);
+  EXPECT_EQ(chip->pio_engine.statistics().late_starts, 0u);
   EXPECT_EQ(spent(CycleCause::wait_load), 0u);
   EXPECT_EQ(statistics().total(), 5001u + 3u);
 }

@@ -322,7 +322,7 @@ TEST_F(ControlUnit, UntimedWorkIsDoneButCostsNothing) {
   EXPECT_EQ(statistics().mono_instructions, 0u);
   EXPECT_EQ(statistics().data_cache_misses + statistics().data_cache_hits, 0u);
   EXPECT_EQ(chip->pe_array.total().runs, 0u);
-  EXPECT_EQ(chip->dma_engine.statistics().busy_cycles(), 0u);
+  EXPECT_EQ(chip->pio_engine.statistics().busy_cycles(), 0u);
   EXPECT_EQ(mono()[4096 + 77], 77);  // through poly memory and back
   EXPECT_EQ(mono()[300], 7);
   EXPECT_EQ(services, 1);

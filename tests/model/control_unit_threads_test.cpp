@@ -385,7 +385,7 @@ std::vector<std::pair<CycleCause, Cycles>> spans_of_busy_firmware(Cycles sync_cy
       Spans recorder;
       chip->control_unit.set_observer(&recorder, sync);
       run_well(busy_firmware);
-      EXPECT_EQ(chip->dma_engine.statistics().late_starts, 0u);
+      EXPECT_EQ(chip->pio_engine.statistics().late_starts, 0u);
       return recorder.all;
     }
   } bench;

@@ -51,7 +51,7 @@ TEST_F(HostLink, OneDmaTakesLatencyAndBytes) {
   EXPECT_EQ(host->statistics().bytes_uploaded, 5000u);
   EXPECT_EQ(host->statistics().bytes_downloaded, 5000u);
   EXPECT_EQ(host->statistics().busy_cycles, 12000u);
-  EXPECT_EQ(host->statistics().host_dmas, 2u);
+  EXPECT_EQ(host->statistics().transfers, 2u);
 }
 
 TEST_F(HostLink, LongTransferIsSeveralDmas) {
@@ -59,7 +59,7 @@ TEST_F(HostLink, LongTransferIsSeveralDmas) {
   std::vector<std::uint8_t> data(2 * 524288 + 1);
   for (std::size_t i = 0; i < data.size(); ++i) data[i] = std::uint8_t(i * 7 + i / 251);
   EXPECT_EQ(host->upload(0, data.data(), data.size(), 0), 3u * 1000 + 2 * 524288 + 1);
-  EXPECT_EQ(host->statistics().host_dmas, 3u);
+  EXPECT_EQ(host->statistics().transfers, 3u);
   EXPECT_EQ(std::memcmp(ddr->memory().data(), data.data(), data.size()), 0);
 }
 
@@ -67,7 +67,7 @@ TEST_F(HostLink, ExactlyOneDmaAtTheLimit) {
   build(two_mebibytes());
   std::vector<std::uint8_t> data(524288);
   EXPECT_EQ(host->upload(0, data.data(), data.size(), 0), 525288u);
-  EXPECT_EQ(host->statistics().host_dmas, 1u);
+  EXPECT_EQ(host->statistics().transfers, 1u);
 }
 
 TEST_F(HostLink, TransfersQueueUp) {
@@ -81,7 +81,7 @@ TEST_F(HostLink, TransfersQueueUp) {
 TEST_F(HostLink, NothingToDoIsDoneAtOnce) {
   build(two_mebibytes());
   EXPECT_EQ(host->upload(0, nullptr, 0, 42), 42u);
-  EXPECT_EQ(host->statistics().host_dmas, 0u);
+  EXPECT_EQ(host->statistics().transfers, 0u);
 }
 
 TEST_F(HostLink, BandwidthIsOfTheChipClock) {

@@ -1,4 +1,4 @@
-#include "model/dma/pio_queue.hpp"
+#include "model/pio/pio_queue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "model/dma/word_history.hpp"
+#include "model/pio/word_history.hpp"
 
 #include <gtest/gtest.h>
 

@@ -42,7 +42,7 @@ TEST_F(CommandLine, RenderWritesEveryOutputAndNothingElse) {
                                        "a.vcd", "--waves-window", "100000:200000"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.error, "");
-  for (const char* line : {"simulated time", "segments/s", "PE utilisation", "SIMD efficiency", "exposed DMA",
+  for (const char* line : {"simulated time", "segments/s", "PE utilisation", "SIMD efficiency", "exposed PIO",
                            "DDR bandwidth", "host time", "faster than the silicon"})
     EXPECT_NE(result.out.find(line), std::string::npos) << line << " in " << result.out;
   std::set<std::string> names;

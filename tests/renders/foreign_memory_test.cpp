@@ -99,7 +99,7 @@ TEST_P(Foreign, MemoryGivesTheSameBits) {
   EXPECT_EQ(checker.active(), 0u);
   EXPECT_GT(memory.accesses(), 1000u);
   EXPECT_EQ(checker.transactions() > 0, GetParam().timing == TimingStyle::approximately_timed);
-  EXPECT_EQ(chip.dma_engine.statistics().late_starts, 0u);
+  EXPECT_EQ(chip.pio_engine.statistics().late_starts, 0u);
   EXPECT_EQ(chip.control_unit.statistics().total(),
             chip.control_unit.now() - chip.control_unit.start_cycle());
 }

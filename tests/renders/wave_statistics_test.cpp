@@ -236,8 +236,8 @@ TEST_P(WaveStatistics, TimelineIsWhatItsFormatAsksForAndAddsUp) {
   using Names = std::map<int, std::string>;
   EXPECT_EQ(tracks, (Names{{1, "kernels"},
                            {2, "control unit waits"},
-                           {3, "DMA loads (mono to poly)"},
-                           {4, "DMA saves (poly to mono)"},
+                           {3, "PIO loads (mono to poly)"},
+                           {4, "PIO saves (poly to mono)"},
                            {5, "host transfers"}}));
   EXPECT_EQ(cycles[1], chip.control[CycleCause::poly] + chip.control[CycleCause::stolen]);
   EXPECT_EQ(cycles[2], chip.control.exposed_pio() + chip.control[CycleCause::wait_host] +

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "model/config/timing_style.hpp"
-#include "model/dma/dma_engine.hpp"
 #include "model/memory/mono_ddr.hpp"
 #include "model/network/clear_connect.hpp"
 #include "model/pe_array/poly_sram.hpp"
-#include "model/time/agenda.hpp"
+#include "model/pio/pio_engine.hpp"
+#include "model/time/event_queue.hpp"
 #include "tests/support/protocol_checker.hpp"
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/test_chip.hpp"
@@ -51,12 +51,12 @@ class PioBench : public SystemCFixture {
   /// For tests whose body is run(): on one chip or the other the same calls.
   void build(const model::ChipConfig& chip, model::TimingStyle style) {
     if (style == model::TimingStyle::approximately_timed)
-      agenda = std::make_unique<model::Agenda>("agenda", clock);
+      event_queue = std::make_unique<model::EventQueue>("event_queue", clock);
     build_unelaborated(chip);
   }
   void build_unelaborated(const model::ChipConfig& chip) {
     prepare(chip);
-    ddr = std::make_unique<model::MonoDdr>("ddr", chip, clock, agenda.get());
+    ddr = std::make_unique<model::MonoDdr>("ddr", chip, clock, event_queue.get());
     network->ddr_socket.bind(at_memory.in);
     at_memory.out.bind(ddr->socket);
   }
@@ -122,9 +122,9 @@ class PioBench : public SystemCFixture {
 
   void prepare(const model::ChipConfig& chip) {
     poly = std::make_unique<cn::PolyMemory>(chip.chip.pes, chip.poly.sram_bytes);
-    engine = std::make_unique<model::DmaEngine>("engine", chip, clock, *poly, agenda.get());
+    engine = std::make_unique<model::PioEngine>("engine", chip, clock, *poly, event_queue.get());
     sram = std::make_unique<model::PolySram>("sram", chip, *poly);
-    network = std::make_unique<model::ClearConnect>("network", chip, clock, agenda.get());
+    network = std::make_unique<model::ClearConnect>("network", chip, clock, event_queue.get());
     engine->semaphores.bind(semaphores);
     engine->mono_socket.bind(at_engine.in);
     at_engine.out.bind(network->pio_socket);
@@ -134,12 +134,12 @@ class PioBench : public SystemCFixture {
   }
 
   model::ClockDomain clock{1e9};
-  std::unique_ptr<model::Agenda> agenda;
+  std::unique_ptr<model::EventQueue> event_queue;
   ProtocolChecker at_engine{"at_engine"};  ///< between engine and network
   ProtocolChecker at_memory{"at_memory"};  ///< between network and memory
   Driver driver{"driver"};
   std::unique_ptr<cn::PolyMemory> poly;
-  std::unique_ptr<model::DmaEngine> engine;
+  std::unique_ptr<model::PioEngine> engine;
   std::unique_ptr<model::PolySram> sram;
   std::unique_ptr<model::ClearConnect> network;
   std::unique_ptr<model::MonoDdr> ddr;

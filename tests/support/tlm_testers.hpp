@@ -8,7 +8,7 @@
 #include <tlm>
 #include <vector>
 
-#include "model/dma/pio_port.hpp"
+#include "model/pio/pio_port.hpp"
 
 namespace test_support {
 

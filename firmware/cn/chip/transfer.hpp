@@ -9,7 +9,7 @@
 
 namespace cn {
 
-/// A hardware semaphore: a counter that DMA, threads and the host signal and wait on.
+/// A hardware semaphore: a counter that PIO, threads and the host signal and wait on.
 struct Semaphore {
   int index = -1;
 };

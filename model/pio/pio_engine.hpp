@@ -9,13 +9,13 @@
 
 #include "firmware/cn/chip/poly_memory.hpp"
 #include "model/config/chip_config.hpp"
-#include "model/dma/at_pio.hpp"
-#include "model/dma/pio_port.hpp"
-#include "model/dma/pio_queue.hpp"
-#include "model/dma/pio_timing.hpp"
-#include "model/dma/word_history.hpp"
 #include "model/memory/mono_window.hpp"
 #include "model/observe/pio_observer.hpp"
+#include "model/pio/at_pio.hpp"
+#include "model/pio/pio_port.hpp"
+#include "model/pio/pio_queue.hpp"
+#include "model/pio/pio_timing.hpp"
+#include "model/pio/word_history.hpp"
 #include "model/time/clock_domain.hpp"
 #include "model/transaction/pe_addresses.hpp"
 
@@ -32,20 +32,20 @@ std::string refused_by_memory(const tlm::tlm_generic_payload& transaction);
 /// Loosely timed, without processes: the control unit calls it with absolute cycles that do not go back. It
 /// must settle(t) before it lets SystemC time advance to t, since TLM-2.0 delays cannot point to the past.
 ///
-/// With an agenda it is approximately timed: AtPio serves requests packet by packet in SystemC time, and the
-/// port's calls let time pass up to the cycle that they are given.
+/// With an event queue it is approximately timed: AtPio serves requests packet by packet in SystemC time, and
+/// the port's calls let time pass up to the cycle that they are given.
 ///
 /// A request without an enabled PE (or of no bytes) signals at once and costs nothing here, even when the
 /// queue is full.
-class DmaEngine : public sc_core::sc_module, public PioPort {
+class PioEngine : public sc_core::sc_module, public PioPort {
  public:
   sc_core::sc_export<PioPort> port{"port"};
   sc_core::sc_port<SemaphorePort> semaphores{"semaphores"};
-  tlm_utils::simple_initiator_socket<DmaEngine> mono_socket{"mono_socket"};
-  tlm_utils::simple_initiator_socket<DmaEngine> poly_socket{"poly_socket"};
+  tlm_utils::simple_initiator_socket<PioEngine> mono_socket{"mono_socket"};
+  tlm_utils::simple_initiator_socket<PioEngine> poly_socket{"poly_socket"};
 
-  DmaEngine(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-            cn::PolyMemory& poly, Agenda* agenda = nullptr);
+  PioEngine(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+            cn::PolyMemory& poly, EventQueue* event_queue = nullptr);
 
   /// Throws cn::MachineFault when an enabled PE's piece is not within mono memory; nothing has moved then.
   Cycles enqueue(const cn::Transfer& transfer, Cycles now) override;
@@ -89,12 +89,12 @@ class DmaEngine : public sc_core::sc_module, public PioPort {
   bool ask_memory();
   sc_core::sc_time book_runs(const MonoPieces& pieces, const sc_core::sc_time& delay);
   void book_poly(Request& request, Cycles data_start);
-  void send_addresses(tlm_utils::simple_initiator_socket<DmaEngine>& socket, PeAddresses& addresses,
+  void send_addresses(tlm_utils::simple_initiator_socket<PioEngine>& socket, PeAddresses& addresses,
                       std::uint64_t address, sc_core::sc_time& delay);
   void prepare(tlm::tlm_command command, std::uint64_t address, std::uint64_t bytes);
 
-  // Approximately timed (dma_engine_at.cpp):
-  void build_at(Agenda& agenda, const ChipConfig& config);
+  // Approximately timed (pio_engine_at.cpp):
+  void build_at(EventQueue& event_queue, const ChipConfig& config);
   void start_at(const PioQueue::Start& next);
   void finish_at(int engine);
   void fail(const tlm::tlm_generic_payload& packet);
@@ -121,7 +121,7 @@ class DmaEngine : public sc_core::sc_module, public PioPort {
   tlm::tlm_generic_payload transaction_;
   std::vector<std::uint8_t> run_data_;
 
-  Agenda* agenda_ = nullptr;
+  EventQueue* event_queue_ = nullptr;
   std::unique_ptr<AtPio> at_;
   std::array<Request*, 2> in_service_{};  ///< by engine
   sc_core::sc_event progress_;            ///< a request has started or is over

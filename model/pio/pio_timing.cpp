@@ -1,4 +1,4 @@
-#include "model/dma/pio_timing.hpp"
+#include "model/pio/pio_timing.hpp"
 
 #include <algorithm>
 

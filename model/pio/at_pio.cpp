@@ -1,15 +1,15 @@
-#include "model/dma/at_pio.hpp"
+#include "model/pio/at_pio.hpp"
 
 #include <algorithm>
 
 namespace model {
 
-AtPio::AtPio(Agenda& agenda, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
+AtPio::AtPio(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
              const PioTiming& timing, MonoWindow& mono, Owner owner)
-    : agenda_(agenda),
+    : event_queue_(event_queue),
       memory_(memory),
       initiator_(
-          agenda, memory,
+          event_queue, memory,
           {[this](auto& packet) { sent(packet); }, [this](auto& packet) { return responded(packet); }}),
       timing_(timing),
       mono_(mono),
@@ -72,7 +72,7 @@ void AtPio::begin_phase(int index) {
 
 void AtPio::begin_phase(int index, Phase phase, Cycles cycles) {
   engines_[std::size_t(index)].busy = true;
-  agenda_.at(agenda_.now() + cycles, [this, index, phase] { end_phase(index, phase); });
+  event_queue_.schedule(event_queue_.now() + cycles, [this, index, phase] { end_phase(index, phase); });
 }
 
 void AtPio::end_phase(int index, Phase phase) {
@@ -116,7 +116,7 @@ Cycles AtPio::responded(tlm::tlm_generic_payload& packet) {
   on_the_way_.erase(way);
   packet.release();
   for (int index = 0; index < int(engines_.size()); ++index) step(index);
-  return agenda_.now();
+  return event_queue_.now();
 }
 
 }  // namespace model

@@ -6,9 +6,9 @@
 #include <tlm>
 #include <vector>
 
-#include "model/dma/pio_timing.hpp"
 #include "model/memory/mono_window.hpp"
-#include "model/time/agenda.hpp"
+#include "model/pio/pio_timing.hpp"
+#include "model/time/event_queue.hpp"
 #include "model/transaction/at_initiator.hpp"
 #include "model/transaction/packet_cursor.hpp"
 #include "model/transaction/payload_pool.hpp"
@@ -36,7 +36,7 @@ class AtPio {
     std::function<void(const tlm::tlm_generic_payload&)> failed;  ///< memory answered with an error
   };
 
-  AtPio(Agenda& agenda, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
+  AtPio(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
         const PioTiming& timing, MonoWindow& mono, Owner owner);
 
   /// `pieces` must last until the engine has finished.
@@ -81,7 +81,7 @@ class AtPio {
   bool room() const { return on_the_way_.size() < outstanding_packets_; }
   std::vector<OnTheWay>::iterator find(const tlm::tlm_generic_payload& packet);
 
-  Agenda& agenda_;
+  EventQueue& event_queue_;
   tlm::tlm_initiator_socket<>& memory_;
   AtInitiator initiator_;
   PayloadPool pool_;

@@ -1,4 +1,4 @@
-#include "model/dma/dma_engine.hpp"
+#include "model/pio/pio_engine.hpp"
 
 #include "firmware/cn/machine.hpp"
 #include "tests/support/pio_bench.hpp"
@@ -13,9 +13,9 @@ using model::PioArbitration;
 using test_support::kAll;
 using test_support::kPes;
 
-class DmaEngineData : public test_support::PioBench {};
+class PioEngineData : public test_support::PioBench {};
 
-TEST_F(DmaEngineData, GatherAndScatterMoveEachPesPiece) {
+TEST_F(PioEngineData, GatherAndScatterMoveEachPesPiece) {
   build(test_support::test_chip());
   fill_memories(1 << 16);
   const cn::MonoAddress from[kPes] = {800, 0, 4096, 8, 16384, 1600, 32768, 24};
@@ -33,7 +33,7 @@ TEST_F(DmaEngineData, GatherAndScatterMoveEachPesPiece) {
   }
 }
 
-TEST_F(DmaEngineData, ScatterMayOverwriteTheTableThatDescribesIt) {
+TEST_F(PioEngineData, ScatterMayOverwriteTheTableThatDescribesIt) {
   build(test_support::test_chip(16));
   fill_memories(4096);
   for (std::uint64_t pe = 0; pe < 8; ++pe) {
@@ -47,7 +47,7 @@ TEST_F(DmaEngineData, ScatterMayOverwriteTheTableThatDescribesIt) {
   }
 }
 
-TEST_F(DmaEngineData, PieceOutsideMonoMemoryIsAFaultBeforeAnythingMoves) {
+TEST_F(PioEngineData, PieceOutsideMonoMemoryIsAFaultBeforeAnythingMoves) {
   build(test_support::test_chip());
   fill_memories(4096);
   cn::MonoAddress to[kPes] = {0, 8, 16, 1048560, 32, 40, 48, 1048569};
@@ -90,7 +90,7 @@ TEST_F(DmaEngineData, PieceOutsideMonoMemoryIsAFaultBeforeAnythingMoves) {
   EXPECT_EQ(message(read(MonoPlaces::array(1048576 - 7 * 32, 32), 32, LaneMask::first(7), 3)), "accepted");
 }
 
-TEST_F(DmaEngineData, MinimalMemoryGetsOneTransactionARun) {
+TEST_F(PioEngineData, MinimalMemoryGetsOneTransactionARun) {
   build_with_minimal_memory(test_support::test_chip(), 100);
   fill_memories(1 << 16);
   cn::MonoAddress by_pe[kPes];
@@ -103,7 +103,7 @@ TEST_F(DmaEngineData, MinimalMemoryGetsOneTransactionARun) {
   for (int pe = 0; pe < kPes; ++pe) EXPECT_EQ(poly_word(pe, 16), 0xd000010 + by_pe[pe]);
 }
 
-TEST_F(DmaEngineData, SlowestRunEndsAWrite) {
+TEST_F(PioEngineData, SlowestRunEndsAWrite) {
   build_with_minimal_memory(test_support::test_chip(), 100);
   minimal->extra_latency[0] = sc_core::sc_time(500, sc_core::SC_NS);
   engine->enqueue(write(MonoPlaces::array(0, 2048), 32, kAll), 1000);
@@ -111,7 +111,7 @@ TEST_F(DmaEngineData, SlowestRunEndsAWrite) {
   EXPECT_EQ(signal(), 1720u);
 }
 
-TEST_F(DmaEngineData, MinimalMemoryGetsAnArrayAsOneTransaction) {
+TEST_F(PioEngineData, MinimalMemoryGetsAnArrayAsOneTransaction) {
   build_with_minimal_memory(test_support::test_chip(), 100);
   fill_memories(4096);
   enqueue_write(1000, 0);
@@ -123,7 +123,7 @@ TEST_F(DmaEngineData, MinimalMemoryGetsAnArrayAsOneTransaction) {
       EXPECT_EQ(mono_word(32 * pe + 8 * word), 0x5000000 + 8 * word + pe);
 }
 
-TEST_F(DmaEngineData, BookingAWriteLateDoesNotUndoLaterData) {
+TEST_F(PioEngineData, BookingAWriteLateDoesNotUndoLaterData) {
   build_with_minimal_memory(test_support::test_chip(), 100);
   fill_memories(4096);
   enqueue_read(1000, 0);
@@ -134,7 +134,7 @@ TEST_F(DmaEngineData, BookingAWriteLateDoesNotUndoLaterData) {
   EXPECT_EQ(mono_word(64), 42u);
 }
 
-TEST_F(DmaEngineData, MinimalMemorySmallerThanItsConfigurationIsAFault) {
+TEST_F(PioEngineData, MinimalMemorySmallerThanItsConfigurationIsAFault) {
   build_with_minimal_memory(test_support::test_chip(), 100);
   minimal->bytes.resize(1024);
   try {
@@ -148,11 +148,11 @@ TEST_F(DmaEngineData, MinimalMemorySmallerThanItsConfigurationIsAFault) {
   }
 }
 
-class DmaEngineMixture : public DmaEngineData, public testing::WithParamInterface<bool> {};
+class PioEngineMixture : public PioEngineData, public testing::WithParamInterface<bool> {};
 
 /// A mixture of gathers, scatters and arrays under changing masks; the result must be what cn::move_data does
 /// alone.
-TEST_P(DmaEngineMixture, IsThatOfMoveData) {
+TEST_P(PioEngineMixture, IsThatOfMoveData) {
   constexpr std::uint64_t kBytes = 1 << 14;
   auto config = test_support::test_chip();
   config.pio.arbitration = PioArbitration::reads_overtake_writes;
@@ -190,6 +190,6 @@ TEST_P(DmaEngineMixture, IsThatOfMoveData) {
   EXPECT_EQ(semaphores.signals[0].size(), 200u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Memories, DmaEngineMixture, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Memories, PioEngineMixture, testing::Bool());
 
 }  // namespace

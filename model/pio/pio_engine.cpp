@@ -1,4 +1,4 @@
-#include "model/dma/dma_engine.hpp"
+#include "model/pio/pio_engine.hpp"
 
 #include <algorithm>
 
@@ -32,8 +32,8 @@ std::string refused_by_memory(const tlm::tlm_generic_payload& transaction) {
          ": memory answered " + transaction.get_response_string();
 }
 
-DmaEngine::DmaEngine(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
-                     cn::PolyMemory& poly, Agenda* agenda)
+PioEngine::PioEngine(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
+                     cn::PolyMemory& poly, EventQueue* event_queue)
     : sc_module(name),
       clock_(clock),
       poly_(poly),
@@ -45,16 +45,16 @@ DmaEngine::DmaEngine(const sc_core::sc_module_name& name, const ChipConfig& conf
       requests_(std::size_t((config.pio.queue_depth + 1) * queue_.engines())),
       history_(std::size_t(queue_.engines()), WordHistory(remembered_requests(config.pio.queue_depth))) {
   port.bind(*this);
-  mono_socket.register_invalidate_direct_mem_ptr(this, &DmaEngine::forget_mono_pointer);
+  mono_socket.register_invalidate_direct_mem_ptr(this, &PioEngine::forget_mono_pointer);
   for (std::size_t slot = 0; slot < requests_.size(); ++slot) free_slots_.push_back(static_cast<int>(slot));
-  if (agenda != nullptr) build_at(*agenda, config);
+  if (event_queue != nullptr) build_at(*event_queue, config);
 }
 
-void DmaEngine::forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) {
+void PioEngine::forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) {
   mono_.invalidate();
 }
 
-Cycles DmaEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
+Cycles PioEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
   settle(now);
   if (transfer.poly.size_bytes == 0 || !any_enabled(transfer.enabled, poly_.num_pes())) {
     ++statistics_.empty_requests;
@@ -86,47 +86,47 @@ Cycles DmaEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
   return accepted;
 }
 
-Cycles DmaEngine::make_room() {
+Cycles PioEngine::make_room() {
   if (at_) {
     wait_for_progress();
-    return agenda_->now();
+    return event_queue_->now();
   }
   const PioQueue::Start next = *queue_.next();
   start(next);
   return next.cycle;
 }
 
-void DmaEngine::settle(Cycles now) {
+void PioEngine::settle(Cycles now) {
   if (at_) return pass_time_until(now);
   start_due(now);
 }
 
-void DmaEngine::start_due(Cycles now) {
+void PioEngine::start_due(Cycles now) {
   if (!queue_.may_start(now)) return;
   for (auto next = queue_.next(); next && next->cycle <= now; next = queue_.next()) start(*next);
 }
 
-bool DmaEngine::serve_next() {
+bool PioEngine::serve_next() {
   if (at_) return wait_for_request();
   if (queue_.waiting() == 0) return false;
   start(*queue_.next());
   return true;
 }
 
-std::optional<Cycles> DmaEngine::next_start() const {
+std::optional<Cycles> PioEngine::next_start() const {
   if (at_) return std::nullopt;  // it starts by itself
   if (queue_.waiting() == 0) return std::nullopt;
   return queue_.next()->cycle;
 }
 
-std::uint64_t DmaEngine::words_moved_before(Cycles cycle) const {
+std::uint64_t PioEngine::words_moved_before(Cycles cycle) const {
   if (at_) return at_->words_moved();
   std::uint64_t words = 0;
   for (const WordHistory& history : history_) words += history.before(cycle);
   return words;
 }
 
-void DmaEngine::start(const PioQueue::Start& next) {
+void PioEngine::start(const PioQueue::Start& next) {
   Request& request = requests_[std::size_t(next.entry.slot)];
   const MonoPieces& pieces = request.addresses.pieces;
   const Cycles data_start = next.cycle + timing_.setup_cycles();
@@ -141,7 +141,7 @@ void DmaEngine::start(const PioQueue::Start& next) {
   end_request(request, finish);
 }
 
-void DmaEngine::note_start(Request& request, const PioQueue::Start& next) {
+void PioEngine::note_start(Request& request, const PioQueue::Start& next) {
   const MonoPieces& pieces = request.addresses.pieces;
   request.event = {
       request.id, pieces.direction(), pieces.poly_bytes(), pieces.pes(), next.entry.enqueued, next.cycle,
@@ -152,7 +152,7 @@ void DmaEngine::note_start(Request& request, const PioQueue::Start& next) {
   observer_->started(request.event);
 }
 
-void DmaEngine::end_request(Request& request, Cycles finish) {
+void PioEngine::end_request(Request& request, Cycles finish) {
   request.event.finished = finish;
   count(request.event, timing_.pe_cycles(request.addresses.pieces));
   if (observer_ != nullptr) observer_->finished(request.event);
@@ -160,11 +160,11 @@ void DmaEngine::end_request(Request& request, Cycles finish) {
   signal(request.done, finish);
 }
 
-void DmaEngine::signal(cn::Semaphore done, Cycles at) {
+void PioEngine::signal(cn::Semaphore done, Cycles at) {
   if (done.index >= 0) semaphores->signal_at(done.index, at);
 }
 
-Cycles DmaEngine::book_memory(Request& request, Cycles start) {
+Cycles PioEngine::book_memory(Request& request, Cycles start) {
   if (clock_.time_at(start) < sc_core::sc_time_stamp()) ++statistics_.late_starts;
   sc_core::sc_time delay = delay_until(clock_, start);
   if (!ask_memory()) return cycle_of_delay(clock_, book_runs(request.addresses.pieces, delay));
@@ -173,7 +173,7 @@ Cycles DmaEngine::book_memory(Request& request, Cycles start) {
   return cycle_of_delay(clock_, delay);
 }
 
-bool DmaEngine::ask_memory() {
+bool PioEngine::ask_memory() {
   if (memory_serves_ == Answer::not_asked) {
     PeAddresses none;  // of no PE: nothing is booked on the way
     sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
@@ -183,7 +183,7 @@ bool DmaEngine::ask_memory() {
   return memory_serves_ == Answer::yes;
 }
 
-void DmaEngine::send_addresses(tlm_utils::simple_initiator_socket<DmaEngine>& socket, PeAddresses& addresses,
+void PioEngine::send_addresses(tlm_utils::simple_initiator_socket<PioEngine>& socket, PeAddresses& addresses,
                                std::uint64_t address, sc_core::sc_time& delay) {
   addresses.served = false;
   prepare(tlm::TLM_IGNORE_COMMAND, address, 8);
@@ -192,7 +192,7 @@ void DmaEngine::send_addresses(tlm_utils::simple_initiator_socket<DmaEngine>& so
   transaction_.clear_extension(&addresses);
 }
 
-sc_core::sc_time DmaEngine::book_runs(const MonoPieces& pieces, const sc_core::sc_time& delay) {
+sc_core::sc_time PioEngine::book_runs(const MonoPieces& pieces, const sc_core::sc_time& delay) {
   sc_core::sc_time end = delay;
   for (const MonoPieces::Run& run : pieces.runs()) {
     prepare(pieces.write() ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND, run.address, run.bytes);
@@ -207,17 +207,17 @@ sc_core::sc_time DmaEngine::book_runs(const MonoPieces& pieces, const sc_core::s
   return end;
 }
 
-void DmaEngine::book_poly(Request& request, Cycles data_start) {
+void PioEngine::book_poly(Request& request, Cycles data_start) {
   sc_core::sc_time delay = delay_until(clock_, data_start);
   send_addresses(poly_socket, request.addresses, std::uint64_t(request.poly.offset_bytes), delay);
 }
 
-void DmaEngine::prepare(tlm::tlm_command command, std::uint64_t address, std::uint64_t bytes) {
+void PioEngine::prepare(tlm::tlm_command command, std::uint64_t address, std::uint64_t bytes) {
   if (run_data_.size() < bytes) run_data_.resize(bytes);
   set_access(transaction_, command, address, run_data_.data(), bytes);
 }
 
-void DmaEngine::count(const PioEvent& event, Cycles pe_cycles) {
+void PioEngine::count(const PioEvent& event, Cycles pe_cycles) {
   const bool to_poly = event.direction == cn::Direction::mono_to_poly;
   ++(to_poly ? statistics_.requests_to_poly : statistics_.requests_to_mono);
   (to_poly ? statistics_.bytes_to_poly : statistics_.bytes_to_mono) += event.bytes;

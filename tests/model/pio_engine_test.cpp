@@ -1,4 +1,4 @@
-#include "model/dma/dma_engine.hpp"
+#include "model/pio/pio_engine.hpp"
 
 #include "firmware/cn/machine.hpp"
 #include "tests/support/pio_bench.hpp"
@@ -12,9 +12,9 @@ using model::Cycles;
 using test_support::kAll;
 using test_support::kPes;
 
-class DmaEngine : public test_support::PioBench {};
+class PioEngine : public test_support::PioBench {};
 
-TEST_F(DmaEngine, ContiguousReadEndsWithThePeSide) {
+TEST_F(PioEngine, ContiguousReadEndsWithThePeSide) {
   build(test_support::test_chip());
   EXPECT_EQ(engine->enqueue(read(MonoPlaces::array(0, 32), 32, kAll), 1000), 1000u);
   // Memory: first address at 1110, at the DDR 1116, data 1146..1162, link 1146..1178, there at 1184.
@@ -24,7 +24,7 @@ TEST_F(DmaEngine, ContiguousReadEndsWithThePeSide) {
   EXPECT_EQ(engine->statistics().memory_wait_cycles, 0u);
 }
 
-TEST_F(DmaEngine, ReadOfOnePePaysTheWholeLatency) {
+TEST_F(PioEngine, ReadOfOnePePaysTheWholeLatency) {
   build(test_support::test_chip());
   engine->enqueue(read(MonoPlaces::array(0, 32), 32, LaneMask::first(1)), 1000);
   // Data 1146..1148, link 1146..1150, there at 1156, then 4 cycles into the PE; its side alone would end at
@@ -34,7 +34,7 @@ TEST_F(DmaEngine, ReadOfOnePePaysTheWholeLatency) {
   EXPECT_EQ(engine->statistics().busy_cycles(), 160u);
 }
 
-TEST_F(DmaEngine, WriteIsPosted) {
+TEST_F(PioEngine, WriteIsPosted) {
   build(test_support::test_chip());
   engine->enqueue(write(MonoPlaces::array(0, 32), 32, LaneMask::first(1)), 1000);
   // The PE's data leave at 1114; at the DDR 1120, data 1150..1152 have been taken.
@@ -42,14 +42,14 @@ TEST_F(DmaEngine, WriteIsPosted) {
   EXPECT_EQ(ddr->statistics().bytes_written, 32u);
 }
 
-TEST_F(DmaEngine, ContiguousWriteEndsWithThePeSide) {
+TEST_F(PioEngine, ContiguousWriteEndsWithThePeSide) {
   build(test_support::test_chip());
   enqueue_write(1000, 0);
   EXPECT_EQ(signal(), 1212u);  // memory 1150..1166
   EXPECT_EQ(engine->statistics().memory_wait_cycles, 0u);
 }
 
-TEST_F(DmaEngine, SlowMemoryHoldsUpReads) {
+TEST_F(PioEngine, SlowMemoryHoldsUpReads) {
   auto config = test_support::test_chip();
   config.ddr.bytes_per_cycle = 1;
   build(config);
@@ -59,7 +59,7 @@ TEST_F(DmaEngine, SlowMemoryHoldsUpReads) {
   EXPECT_EQ(engine->statistics().memory_wait_cycles, 200u);
 }
 
-TEST_F(DmaEngine, SlowMemoryPushesWritesBack) {
+TEST_F(PioEngine, SlowMemoryPushesWritesBack) {
   auto config = test_support::test_chip();
   config.ddr.bytes_per_cycle = 1;
   build(config);
@@ -69,7 +69,7 @@ TEST_F(DmaEngine, SlowMemoryPushesWritesBack) {
   EXPECT_EQ(engine->statistics().memory_wait_cycles, 194u);
 }
 
-TEST_F(DmaEngine, GatherOverRowsOfOneBankWaitsForMemory) {
+TEST_F(PioEngine, GatherOverRowsOfOneBankWaitsForMemory) {
   build(test_support::test_chip());
   cn::MonoAddress by_pe[kPes];
   for (std::uint64_t pe = 0; pe < kPes; ++pe) by_pe[pe] = 2048 * pe;
@@ -80,7 +80,7 @@ TEST_F(DmaEngine, GatherOverRowsOfOneBankWaitsForMemory) {
   EXPECT_EQ(ddr->statistics().page_misses, 8u);
 }
 
-TEST_F(DmaEngine, ScatterOverRowsOfOneBankWaitsForMemory) {
+TEST_F(PioEngine, ScatterOverRowsOfOneBankWaitsForMemory) {
   build(test_support::test_chip());
   cn::MonoAddress by_pe[kPes];
   for (std::uint64_t pe = 0; pe < kPes; ++pe) by_pe[pe] = 2048 * pe;
@@ -89,7 +89,7 @@ TEST_F(DmaEngine, ScatterOverRowsOfOneBankWaitsForMemory) {
   EXPECT_EQ(signal(), 1236u);
 }
 
-TEST_F(DmaEngine, MisalignedPiecesCostExtra) {
+TEST_F(PioEngine, MisalignedPiecesCostExtra) {
   build(test_support::test_chip());
   // 48-byte pieces in 64-byte packets: 2 of 4 cross. 100 + 8 x (10 + 6) + 4 x 5.
   engine->enqueue(read(MonoPlaces::array(0, 48), 48, kAll, 0), 1000);
@@ -100,7 +100,7 @@ TEST_F(DmaEngine, MisalignedPiecesCostExtra) {
   EXPECT_EQ(engine->statistics().pe_cycles, 148u + 144u);
 }
 
-TEST_F(DmaEngine, ReferenceExampleOf96Pes) {
+TEST_F(PioEngine, ReferenceExampleOf96Pes) {
   auto config = test_support::test_chip(96);
   config.pio.setup_cycles = 150;
   config.pio.per_pe_cycles = 16;
@@ -112,7 +112,7 @@ TEST_F(DmaEngine, ReferenceExampleOf96Pes) {
   EXPECT_EQ(signal(1), 12646u);
 }
 
-TEST_F(DmaEngine, DisabledPesTakeNoPart) {
+TEST_F(PioEngine, DisabledPesTakeNoPart) {
   build(test_support::test_chip());
   fill_memories(4096);
   LaneMask enabled;
@@ -129,7 +129,7 @@ TEST_F(DmaEngine, DisabledPesTakeNoPart) {
   EXPECT_EQ(engine->statistics().bytes_to_poly, 96u);
 }
 
-TEST_F(DmaEngine, RequestWithoutAPeSignalsAtOnceEvenWhenTheQueueIsFull) {
+TEST_F(PioEngine, RequestWithoutAPeSignalsAtOnceEvenWhenTheQueueIsFull) {
   build(test_support::test_chip());
   for (int i = 0; i < 3; ++i) enqueue_read(1000, 5);
   EXPECT_EQ(engine->queue_depth(), 2);
@@ -143,14 +143,14 @@ TEST_F(DmaEngine, RequestWithoutAPeSignalsAtOnceEvenWhenTheQueueIsFull) {
   EXPECT_EQ(engine->statistics().busy_cycles(), 3u * 212);
 }
 
-TEST_F(DmaEngine, NobodyIsSignalledWithoutASemaphore) {
+TEST_F(PioEngine, NobodyIsSignalledWithoutASemaphore) {
   build(test_support::test_chip());
   engine->enqueue(read(MonoPlaces::array(0, 32), 32, kAll, -1), 1000);
   EXPECT_FALSE(engine->serve_next());
   EXPECT_TRUE(semaphores.signals.empty());
 }
 
-TEST_F(DmaEngine, EqualAddressesAreFetchedOnceWhenAsked) {
+TEST_F(PioEngine, EqualAddressesAreFetchedOnceWhenAsked) {
   auto config = test_support::test_chip();
   config.pio.consolidate_equal_addresses = true;
   build(config);
@@ -162,21 +162,21 @@ TEST_F(DmaEngine, EqualAddressesAreFetchedOnceWhenAsked) {
   EXPECT_EQ(engine->statistics().bytes_to_poly, 256u);
 }
 
-TEST_F(DmaEngine, EqualAddressesAreFetchedByEachPeOtherwise) {
+TEST_F(PioEngine, EqualAddressesAreFetchedByEachPeOtherwise) {
   build(test_support::test_chip());
   engine->enqueue(read(MonoPlaces::array(64, 0), 32, kAll), 1000);
   EXPECT_EQ(signal(), 1212u);
   EXPECT_EQ(ddr->statistics().bytes_read, 256u);
 }
 
-TEST_F(DmaEngine, CyclesAreAbsoluteAtAnySimulationTime) {
+TEST_F(PioEngine, CyclesAreAbsoluteAtAnySimulationTime) {
   build(test_support::test_chip());
   sc_core::sc_start(sc_core::sc_time(900, sc_core::SC_NS));
   engine->enqueue(read(MonoPlaces::array(0, 32), 32, LaneMask::first(1)), 1000);
   EXPECT_EQ(signal(), 1160u);
 }
 
-TEST_F(DmaEngine, SramPortsAreBooked) {
+TEST_F(PioEngine, SramPortsAreBooked) {
   build(test_support::test_chip());
   enqueue_read(0, 0);
   engine->enqueue(write(MonoPlaces::array(0, 32), 32, LaneMask::first(3), 1), 1000);

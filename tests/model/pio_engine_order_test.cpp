@@ -1,4 +1,4 @@
-#include "model/dma/dma_engine.hpp"
+#include "model/pio/pio_engine.hpp"
 
 #include "firmware/cn/machine.hpp"
 #include "tests/support/pio_bench.hpp"
@@ -10,9 +10,9 @@ using cn::MonoPlaces;
 using model::Cycles;
 using model::PioArbitration;
 
-class DmaEngineOrder : public test_support::PioBench {};
+class PioEngineOrder : public test_support::PioBench {};
 
-TEST_F(DmaEngineOrder, StrictFifo) {
+TEST_F(PioEngineOrder, StrictFifo) {
   build(test_support::chip_with(PioArbitration::strict_fifo));
   enqueue_read(1000, 0);
   enqueue_write(1001, 1);
@@ -24,7 +24,7 @@ TEST_F(DmaEngineOrder, StrictFifo) {
   EXPECT_EQ(engine->statistics().max_queue_depth, 2);
 }
 
-TEST_F(DmaEngineOrder, ReadsOvertakeWrites) {
+TEST_F(PioEngineOrder, ReadsOvertakeWrites) {
   build(test_support::chip_with(PioArbitration::reads_overtake_writes));
   enqueue_read(1000, 0);
   enqueue_write(1001, 1);
@@ -34,7 +34,7 @@ TEST_F(DmaEngineOrder, ReadsOvertakeWrites) {
   EXPECT_EQ(signal(1), 1636u);
 }
 
-TEST_F(DmaEngineOrder, QueuePerDirection) {
+TEST_F(PioEngineOrder, QueuePerDirection) {
   build(test_support::chip_with(PioArbitration::queue_per_direction));
   enqueue_read(1000, 0);
   enqueue_write(1001, 1);
@@ -45,7 +45,7 @@ TEST_F(DmaEngineOrder, QueuePerDirection) {
   EXPECT_EQ(ddr->statistics().turn_rounds, 2u);
 }
 
-TEST_F(DmaEngineOrder, DirectionsShareTheMemory) {
+TEST_F(PioEngineOrder, DirectionsShareTheMemory) {
   auto config = test_support::chip_with(PioArbitration::queue_per_direction);
   config.ddr.bytes_per_cycle = 1;
   build(config);
@@ -55,7 +55,7 @@ TEST_F(DmaEngineOrder, DirectionsShareTheMemory) {
   EXPECT_EQ(signal(1), 1662u);  // turn-round of 4, then 1406..1662
 }
 
-TEST_F(DmaEngineOrder, FullQueueHoldsUpTheControlUnit) {
+TEST_F(PioEngineOrder, FullQueueHoldsUpTheControlUnit) {
   build(test_support::test_chip());
   EXPECT_EQ(enqueue_read(1000, 0), 1000u);
   EXPECT_EQ(enqueue_read(1001, 1), 1001u);
@@ -67,14 +67,14 @@ TEST_F(DmaEngineOrder, FullQueueHoldsUpTheControlUnit) {
   EXPECT_EQ(engine->statistics().blocked_cycles, 209u + 124u);
 }
 
-TEST_F(DmaEngineOrder, FullQueueOfOneDirectionDoesNotHoldUpTheOther) {
+TEST_F(PioEngineOrder, FullQueueOfOneDirectionDoesNotHoldUpTheOther) {
   build(test_support::chip_with(PioArbitration::queue_per_direction));
   for (int i = 0; i < 3; ++i) enqueue_read(1000, 0);
   EXPECT_EQ(enqueue_write(1001, 1), 1001u);
   EXPECT_EQ(enqueue_read(1002, 0), 1212u);
 }
 
-TEST_F(DmaEngineOrder, SettleStartsWhatIsDueAndNoMore) {
+TEST_F(PioEngineOrder, SettleStartsWhatIsDueAndNoMore) {
   build(test_support::test_chip());
   enqueue_read(1000, 0);
   enqueue_read(1001, 1);
@@ -89,9 +89,9 @@ TEST_F(DmaEngineOrder, SettleStartsWhatIsDueAndNoMore) {
   EXPECT_FALSE(engine->serve_next());
 }
 
-class DmaEngineSettled : public DmaEngineOrder, public testing::WithParamInterface<PioArbitration> {};
+class PioEngineSettled : public PioEngineOrder, public testing::WithParamInterface<PioArbitration> {};
 
-TEST_P(DmaEngineSettled, ResultDoesNotDependOnHowOftenItIsSettled) {
+TEST_P(PioEngineSettled, ResultDoesNotDependOnHowOftenItIsSettled) {
   auto config = test_support::chip_with(GetParam());
   config.pio.queue_depth = 4;
   config.ddr.refresh_interval_cycles = 700;
@@ -119,11 +119,11 @@ TEST_P(DmaEngineSettled, ResultDoesNotDependOnHowOftenItIsSettled) {
   EXPECT_EQ(seldom, often);
 }
 
-INSTANTIATE_TEST_SUITE_P(Arbitrations, DmaEngineSettled,
+INSTANTIATE_TEST_SUITE_P(Arbitrations, PioEngineSettled,
                          testing::Values(PioArbitration::strict_fifo, PioArbitration::reads_overtake_writes,
                                          PioArbitration::queue_per_direction));
 
-TEST_F(DmaEngineOrder, WordsMoveLinearlyAfterSetup) {
+TEST_F(PioEngineOrder, WordsMoveLinearlyAfterSetup) {
   build(test_support::test_chip());
   enqueue_read(1000, 0);  // 32 words in 1100..1212
   EXPECT_EQ(engine->words_moved_before(1100), 0u);
@@ -135,7 +135,7 @@ TEST_F(DmaEngineOrder, WordsMoveLinearlyAfterSetup) {
   EXPECT_EQ(engine->words_moved_before(1156), 16u);
 }
 
-TEST_F(DmaEngineOrder, StartInThePastIsCounted) {
+TEST_F(PioEngineOrder, StartInThePastIsCounted) {
   build(test_support::test_chip());
   enqueue_read(100, 0);
   enqueue_read(101, 1);  // starts at 312
@@ -149,7 +149,7 @@ TEST_F(DmaEngineOrder, StartInThePastIsCounted) {
   EXPECT_EQ(engine->statistics().late_starts, 1u);
 }
 
-TEST_F(DmaEngineOrder, ObserverSeesEveryRequestWithItsTimes) {
+TEST_F(PioEngineOrder, ObserverSeesEveryRequestWithItsTimes) {
   struct Observer : model::PioObserver {
     void started(const model::PioEvent& event) override {
       EXPECT_EQ(event.finished, 0u);

@@ -1,15 +1,15 @@
-#include "firmware/examples/dma_sweep.hpp"
+#include "firmware/examples/pio_sweep.hpp"
 
 #include "firmware/examples/mono_cost.hpp"
 
 namespace examples {
 
-DmaSweep::DmaSweep(cn::Machine& machine, int largest_bytes)
+PioSweep::PioSweep(cn::Machine& machine, int largest_bytes)
     : machine_(machine),
       buffer_(machine.poly_memory().allocate("piece", largest_bytes)),
       done_(machine.allocate_semaphore("done")) {}
 
-void DmaSweep::load(const Pattern& pattern, int repeats) {
+void PioSweep::load(const Pattern& pattern, int repeats) {
   for (int i = 0; i < repeats; ++i) {
     machine_.issue_mono(kRequestInstructions);
     machine_.async_copy_m2p(done_, piece(pattern),
@@ -19,7 +19,7 @@ void DmaSweep::load(const Pattern& pattern, int repeats) {
   }
 }
 
-void DmaSweep::save(const Pattern& pattern, int repeats) {
+void PioSweep::save(const Pattern& pattern, int repeats) {
   for (int i = 0; i < repeats; ++i) {
     machine_.issue_mono(kRequestInstructions);
     machine_.async_copy_p2m(done_, cn::MonoPlaces::array(pattern.address, pattern.stride_bytes),

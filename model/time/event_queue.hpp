@@ -13,14 +13,14 @@ namespace model {
 /// What approximately timed units have to do in later cycles, in one order for the whole chip: by cycle, then
 /// as it was asked for. One process serves all units: between processes of their own, the kernel would choose
 /// who comes first in a cycle, and a tracing process beside them could change its choice.
-class Agenda : public sc_core::sc_module {
+class EventQueue : public sc_core::sc_module {
  public:
   using Task = std::function<void()>;  ///< up to two pointers are held without allocating
 
-  Agenda(const sc_core::sc_module_name& name, const ClockDomain& clock);
+  EventQueue(const sc_core::sc_module_name& name, const ClockDomain& clock);
 
   /// In a cycle that is over: as soon as possible.
-  void at(Cycles cycle, Task task);
+  void schedule(Cycles cycle, Task task);
   Cycles now() const { return clock_.cycle_at(sc_core::sc_time_stamp()); }
   /// The first cycle that is not before a TLM-2.0 delay from now, and the delay that points at a cycle.
   Cycles cycle_after(const sc_core::sc_time& delay) const;

@@ -1,4 +1,4 @@
-#include "model/time/agenda.hpp"
+#include "model/time/event_queue.hpp"
 
 #include <algorithm>
 
@@ -6,25 +6,25 @@
 
 namespace model {
 
-Agenda::Agenda(const sc_core::sc_module_name& name, const ClockDomain& clock)
+EventQueue::EventQueue(const sc_core::sc_module_name& name, const ClockDomain& clock)
     : sc_module(name), clock_(clock) {
-  SC_HAS_PROCESS(Agenda);
+  SC_HAS_PROCESS(EventQueue);
   SC_METHOD(run);
   sensitive << wake_;
   dont_initialize();
   for (std::vector<Task>& tasks : near_) tasks.reserve(kUsualTasks);
 }
 
-Cycles Agenda::cycle_after(const sc_core::sc_time& delay) const {
+Cycles EventQueue::cycle_after(const sc_core::sc_time& delay) const {
   const Cycles nearest = cycle_of_delay(clock_, delay);
   return clock_.time_at(nearest) < sc_core::sc_time_stamp() + delay ? nearest + 1 : nearest;
 }
 
-sc_core::sc_time Agenda::delay_until(Cycles cycle) const {
+sc_core::sc_time EventQueue::delay_until(Cycles cycle) const {
   return model::delay_until(clock_, cycle);
 }
 
-void Agenda::at(Cycles cycle, Task task) {
+void EventQueue::schedule(Cycles cycle, Task task) {
   if (entries_ == 0 && !running_) first_ = std::max(first_, now());
   cycle = std::max(cycle, first_);
   ++entries_;
@@ -40,7 +40,7 @@ void Agenda::at(Cycles cycle, Task task) {
   if (!running_) wake_.notify(delay_until(cycle));
 }
 
-void Agenda::run() {
+void EventQueue::run() {
   running_ = true;
   while (entries_ > 0) {
     const Cycles next = next_cycle();
@@ -52,12 +52,12 @@ void Agenda::run() {
   if (entries_ > 0) wake_.notify(delay_until(next_cycle()));
 }
 
-Cycles Agenda::next_cycle() const {
+Cycles EventQueue::next_cycle() const {
   const Cycles near = next_near_cycle();
   return far_.empty() ? near : std::min(near, far_.front().cycle);
 }
 
-Cycles Agenda::next_near_cycle() const {
+Cycles EventQueue::next_near_cycle() const {
   const std::size_t start = first_ % kNear;
   for (std::size_t i = 0; i <= near_filled_.size(); ++i) {
     const std::size_t word = (start / 64 + i) % near_filled_.size();
@@ -71,7 +71,7 @@ Cycles Agenda::next_near_cycle() const {
 }
 
 /// Tasks may ask for further ones in the same cycle.
-void Agenda::do_tasks_of(Cycles cycle) {
+void EventQueue::do_tasks_of(Cycles cycle) {
   while (!far_.empty() && far_.front().cycle == cycle) {
     std::pop_heap(far_.begin(), far_.end(), later);
     const Task task = std::move(far_.back().task);
@@ -91,18 +91,18 @@ void Agenda::do_tasks_of(Cycles cycle) {
   near_filled_[list / 64] &= ~(std::uint64_t{1} << (list % 64));
 }
 
-void Agenda::pass_time_until(Cycles cycle) {
+void EventQueue::pass_time_until(Cycles cycle) {
   const sc_core::sc_time delay = delay_until(cycle);
   if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
   come_last();
 }
 
-void Agenda::pass_time_until(const sc_core::sc_event& event) {
+void EventQueue::pass_time_until(const sc_core::sc_event& event) {
   sc_core::wait(event);
   come_last();
 }
 
-void Agenda::come_last() {
+void EventQueue::come_last() {
   while (sc_core::sc_pending_activity_at_current_time()) sc_core::wait(sc_core::SC_ZERO_TIME);
 }
 

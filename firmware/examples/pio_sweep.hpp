@@ -6,7 +6,7 @@ namespace examples {
 
 /// The same transfer again and again, each waited for: what programmed I/O does to a program that does not
 /// overlap it.
-class DmaSweep {
+class PioSweep {
  public:
   /// Where the pieces of one transfer are.
   struct Pattern {
@@ -17,7 +17,7 @@ class DmaSweep {
   };
 
   /// Throws cn::PolyMemoryOverflow.
-  DmaSweep(cn::Machine& machine, int largest_bytes);
+  PioSweep(cn::Machine& machine, int largest_bytes);
 
   void load(const Pattern& pattern, int repeats);
   void save(const Pattern& pattern, int repeats);

@@ -29,15 +29,15 @@ namespace model {
 ///
 /// Data have moved when the request was queued; packets carry them once more. A write that is on the way is
 /// kept equal to what memory holds, so that none brings back what a later request has replaced.
-class AtPio {
+class PioPackets {
  public:
   struct Owner {
     std::function<void(int engine)> finished;
     std::function<void(const tlm::tlm_generic_payload&)> failed;  ///< memory answered with an error
   };
 
-  AtPio(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
-        const PioTiming& timing, MonoWindow& mono, Owner owner);
+  PioPackets(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
+             const PioTiming& timing, MonoWindow& mono, Owner owner);
 
   /// `pieces` must last until the engine has finished.
   void start(int engine, const MonoPieces& pieces);

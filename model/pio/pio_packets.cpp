@@ -1,11 +1,11 @@
-#include "model/pio/at_pio.hpp"
+#include "model/pio/pio_packets.hpp"
 
 #include <algorithm>
 
 namespace model {
 
-AtPio::AtPio(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
-             const PioTiming& timing, MonoWindow& mono, Owner owner)
+PioPackets::PioPackets(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
+                       const PioTiming& timing, MonoWindow& mono, Owner owner)
     : event_queue_(event_queue),
       memory_(memory),
       initiator_(
@@ -17,13 +17,13 @@ AtPio::AtPio(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const
       packet_bytes_(std::uint64_t(config.clear_connect.packet_bytes)),
       outstanding_packets_(std::size_t(config.pio.outstanding_packets)) {}
 
-void AtPio::start(int engine, const MonoPieces& pieces) {
+void PioPackets::start(int engine, const MonoPieces& pieces) {
   engines_[std::size_t(engine)] = {
       &pieces, PacketCursor(pieces, packet_bytes_), PacketCursor(pieces, packet_bytes_), false, 0, 0, 0};
   begin_phase(engine, Phase::setup, timing_.setup_cycles());
 }
 
-void AtPio::step(int index) {
+void PioPackets::step(int index) {
   Engine& engine = engines_[std::size_t(index)];
   if (engine.pieces == nullptr) return;
   send_packets(index);
@@ -33,7 +33,7 @@ void AtPio::step(int index) {
   owner_.finished(index);
 }
 
-void AtPio::send_packets(int index) {
+void PioPackets::send_packets(int index) {
   Engine& engine = engines_[std::size_t(index)];
   for (; packet_is_due(engine) && room(); engine.next_to_send.advance()) {
     const PacketCursor::Packet& next = engine.next_to_send.packet();
@@ -46,19 +46,19 @@ void AtPio::send_packets(int index) {
   }
 }
 
-bool AtPio::packet_is_due(const Engine& engine) const {
+bool PioPackets::packet_is_due(const Engine& engine) const {
   if (engine.next_to_send.at_end()) return false;
   const PacketCursor::Packet& packet = engine.next_to_send.packet();
   return (engine.pieces->write() ? packet.last_piece : packet.first_piece) < engine.addressed;
 }
 
 /// Responses come in the order of the requests: there is one way through the network.
-bool AtPio::data_of_next_piece_are_there(const Engine& engine) const {
+bool PioPackets::data_of_next_piece_are_there(const Engine& engine) const {
   return engine.moved < engine.addressed &&
          (engine.next_to_arrive.at_end() || engine.next_to_arrive.packet().first_piece > engine.moved);
 }
 
-void AtPio::begin_phase(int index) {
+void PioPackets::begin_phase(int index) {
   const Engine& engine = engines_[std::size_t(index)];
   const MonoPieces& pieces = *engine.pieces;
   if (engine.addressed < pieces.pieces() && !packet_is_due(engine) && room()) {
@@ -70,12 +70,12 @@ void AtPio::begin_phase(int index) {
   }
 }
 
-void AtPio::begin_phase(int index, Phase phase, Cycles cycles) {
+void PioPackets::begin_phase(int index, Phase phase, Cycles cycles) {
   engines_[std::size_t(index)].busy = true;
   event_queue_.schedule(event_queue_.now() + cycles, [this, index, phase] { end_phase(index, phase); });
 }
 
-void AtPio::end_phase(int index, Phase phase) {
+void PioPackets::end_phase(int index, Phase phase) {
   Engine& engine = engines_[std::size_t(index)];
   engine.busy = false;
   if (phase == Phase::address) ++engine.addressed;
@@ -85,31 +85,31 @@ void AtPio::end_phase(int index, Phase phase) {
   step(index);
 }
 
-bool AtPio::is_over(const Engine& engine) const {
+bool PioPackets::is_over(const Engine& engine) const {
   if (engine.busy) return false;
   if (!engine.pieces->write()) return engine.moved == engine.pieces->pieces();
   return engine.next_to_send.at_end() && engine.unsent == 0;
 }
 
-void AtPio::refresh_writes_on_the_way() {
+void PioPackets::refresh_writes_on_the_way() {
   for (const OnTheWay& way : on_the_way_)
     if (way.packet->is_write())
       mono_.read(way.packet->get_address(), way.packet->get_data_ptr(), way.packet->get_data_length(),
                  *memory_.operator->());
 }
 
-std::vector<AtPio::OnTheWay>::iterator AtPio::find(const tlm::tlm_generic_payload& packet) {
+std::vector<PioPackets::OnTheWay>::iterator PioPackets::find(const tlm::tlm_generic_payload& packet) {
   return std::find_if(on_the_way_.begin(), on_the_way_.end(),
                       [&](const OnTheWay& way) { return way.packet == &packet; });
 }
 
-void AtPio::sent(const tlm::tlm_generic_payload& packet) {
+void PioPackets::sent(const tlm::tlm_generic_payload& packet) {
   const int index = find(packet)->engine;
   --engines_[std::size_t(index)].unsent;
   step(index);
 }
 
-Cycles AtPio::responded(tlm::tlm_generic_payload& packet) {
+Cycles PioPackets::responded(tlm::tlm_generic_payload& packet) {
   if (packet.is_response_error()) owner_.failed(packet);
   const auto way = find(packet);
   if (packet.is_read()) engines_[std::size_t(way->engine)].next_to_arrive.advance();

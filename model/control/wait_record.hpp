@@ -19,8 +19,8 @@ inline constexpr int kWaiters = 2;
 /// Who can signal one.
 enum class Signaller : std::uint8_t { control_unit, host, pio };
 
-/// Who waits for which semaphore and who signalled it last: kept for the one report that a deadlock needs.
-/// Costs a few stores an event.
+/// Who waits for each semaphore, who signalled it last, who shares it and which transfers were started on it:
+/// kept to say what a wait is for, and for the report of a deadlock. Costs a few stores an event.
 class WaitRecord {
  public:
   void waits(Waiter waiter, cn::Semaphore semaphore, Cycles since);
@@ -33,6 +33,10 @@ class WaitRecord {
   }
   /// From now on the host is one of those who may signal or wait.
   void share_with_host(cn::Semaphore semaphore) { shared_with_host_.at(std::size_t(semaphore.index)) = true; }
+
+  bool is_shared_with_host(int semaphore) const { return shared_with_host_[std::size_t(semaphore)]; }
+  /// Direction of the latest transfer that signals `semaphore`; mono to poly before the first.
+  cn::Direction latest_transfer(int semaphore) const { return started_[std::size_t(semaphore)].direction; }
 
   /// The wait graph of a chip on which nobody can go on: a summarising line, then one a waiter, with the
   /// semaphore's count, who can signal it and who did last; then the signals that nobody has taken. No

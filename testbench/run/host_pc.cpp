@@ -9,9 +9,9 @@ using path_tracer::HostSemaphores;
 
 HostPc::HostPc(const sc_core::sc_module_name& name, model::Csx600& chip, const MonoImage& image, Film& film)
     : sc_module(name), chip_(chip), image_(image), results_(image.layout, film) {
-  chip_.control_unit.share_with_host(HostSemaphores::kResultsReady);
-  chip_.control_unit.share_with_host(HostSemaphores::kResultsFree);
-  chip_.control_unit.on_untimed_signal([this] { fetch_untimed_results(); });
+  chip_.control_unit.host_semaphores().share(HostSemaphores::kResultsReady);
+  chip_.control_unit.host_semaphores().share(HostSemaphores::kResultsFree);
+  chip_.control_unit.host_semaphores().on_untimed_signal([this] { fetch_untimed_results(); });
   SC_HAS_PROCESS(HostPc);
   SC_THREAD(run);
 }
@@ -25,9 +25,9 @@ void HostPc::run() {
   wait_until(chip_.host_link.upload(0, image_.bytes.data(), image_.bytes.size(), now()));
   chip_.control_unit.start();
   while (true) {
-    while (chip_.control_unit.host_try_wait(HostSemaphores::kResultsReady)) fetch_results();
+    while (chip_.control_unit.host_semaphores().try_wait(HostSemaphores::kResultsReady)) fetch_results();
     if (chip_.control_unit.finished()) break;
-    wait(chip_.control_unit.host_event() | chip_.control_unit.finished_event());
+    wait(chip_.control_unit.host_semaphores().firmware_signalled() | chip_.control_unit.finished_event());
   }
   finished_cycle_ = now();
   finished_ = true;
@@ -38,7 +38,7 @@ void HostPc::fetch_results() {
     if (checker_ != nullptr) checker_->host_touches_mono(cn::Access::read, {from, bytes});
     wait_until(chip_.host_link.download(from, to, bytes, now()));
   });
-  chip_.control_unit.host_signal(HostSemaphores::kResultsFree);
+  chip_.control_unit.host_semaphores().signal(HostSemaphores::kResultsFree);
 }
 
 /// For programs that are timed without radiance: their results are not part of the run.

@@ -29,8 +29,8 @@ class SlowHost : public sc_core::sc_module {
  public:
   SlowHost(const sc_core::sc_module_name& name, model::Csx600& chip, Cycles answer_cycles)
       : sc_module(name), chip_(chip), answer_cycles_(answer_cycles) {
-    chip_.control_unit.share_with_host(kToHost);
-    chip_.control_unit.share_with_host(kFromHost);
+    chip_.control_unit.host_semaphores().share(kToHost);
+    chip_.control_unit.host_semaphores().share(kFromHost);
     SC_HAS_PROCESS(SlowHost);
     SC_THREAD(run);
   }
@@ -39,11 +39,11 @@ class SlowHost : public sc_core::sc_module {
  private:
   void run() {
     while (true) {
-      wait(chip_.control_unit.host_event());
-      while (chip_.control_unit.host_try_wait(kToHost)) {
+      wait(chip_.control_unit.host_semaphores().firmware_signalled());
+      while (chip_.control_unit.host_semaphores().try_wait(kToHost)) {
         seen.push_back(chip_.clock.cycle_at(sc_core::sc_time_stamp()));
         if (answer_cycles_ > 0) wait(chip_.clock.time_at(answer_cycles_));
-        chip_.control_unit.host_signal(kFromHost);
+        chip_.control_unit.host_semaphores().signal(kFromHost);
       }
     }
   }
@@ -114,10 +114,10 @@ TEST_F(ControlUnitHost, TransfersGoOnWhileTheControlUnitWaitsForTheHost) {
 TEST_F(ControlUnitHost, NothingToTakeWithoutASignal) {
   run_well([this](Machine& machine) {
     allocate_host_semaphores(machine);
-    EXPECT_FALSE(chip->control_unit.host_try_wait(kToHost));
+    EXPECT_FALSE(chip->control_unit.host_semaphores().try_wait(kToHost));
     machine.issue_mono(10);
   });
-  EXPECT_FALSE(chip->control_unit.host_try_wait(kToHost));
+  EXPECT_FALSE(chip->control_unit.host_semaphores().try_wait(kToHost));
 }
 
 TEST_F(ControlUnitHost, FinishedEventFollowsTheLastCycle) {

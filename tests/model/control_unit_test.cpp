@@ -305,7 +305,7 @@ TEST_F(ControlUnit, UntimedWorkIsDoneButCostsNothing) {
   build(test_chip());
   for (int i = 0; i < 256; ++i) mono()[i] = std::uint8_t(i);
   int services = 0;
-  chip->control_unit.on_untimed_signal([&] { ++services; });
+  chip->control_unit.host_semaphores().on_untimed_signal([&] { ++services; });
   run_well([](Machine& machine) {
     const Semaphore done = machine.allocate_semaphore("done");
     const cn::Untimed untimed(machine);

@@ -282,17 +282,17 @@ TEST_F(ControlUnitThreads, ApproximatelyTimedChipRefusesASecondThread) {
 class SlowHost : public sc_core::sc_module {
  public:
   SlowHost(const sc_core::sc_module_name& name, model::Csx600& chip) : sc_module(name), chip_(chip) {
-    for (const int index : {0, 1}) chip_.control_unit.share_with_host({index});
+    for (const int index : {0, 1}) chip_.control_unit.host_semaphores().share({index});
     SC_HAS_PROCESS(SlowHost);
     SC_THREAD(run);
   }
 
  private:
   void run() {
-    wait(chip_.control_unit.host_event());
-    if (!chip_.control_unit.host_try_wait({0})) return;
+    wait(chip_.control_unit.host_semaphores().firmware_signalled());
+    if (!chip_.control_unit.host_semaphores().try_wait({0})) return;
     wait(chip_.clock.time_at(500));
-    chip_.control_unit.host_signal({1});
+    chip_.control_unit.host_semaphores().signal({1});
   }
   model::Csx600& chip_;
 };

@@ -72,8 +72,8 @@ class Host : public sc_core::sc_module {
  public:
   Host(const sc_core::sc_module_name& name, model::Csx600& chip, int answers)
       : sc_module(name), chip_(chip), answers_(answers) {
-    chip_.control_unit.share_with_host(kToHost);
-    chip_.control_unit.share_with_host(kFromHost);
+    chip_.control_unit.host_semaphores().share(kToHost);
+    chip_.control_unit.host_semaphores().share(kFromHost);
     SC_HAS_PROCESS(Host);
     SC_THREAD(run);
   }
@@ -81,12 +81,12 @@ class Host : public sc_core::sc_module {
  private:
   void run() {
     while (true) {
-      while (chip_.control_unit.host_try_wait(kToHost)) {
+      while (chip_.control_unit.host_semaphores().try_wait(kToHost)) {
         if (answers_-- <= 0) return;
         wait(100, sc_core::SC_NS);
-        chip_.control_unit.host_signal(kFromHost);
+        chip_.control_unit.host_semaphores().signal(kFromHost);
       }
-      wait(chip_.control_unit.host_event());
+      wait(chip_.control_unit.host_semaphores().firmware_signalled());
     }
   }
   model::Csx600& chip_;
@@ -128,7 +128,7 @@ TEST_P(Deadlock, OfAHostThatNeverAnswers) {
 }
 
 TEST_P(Deadlock, OfAHostThatNeverLooks) {
-  chip->control_unit.share_with_host(kFromHost);
+  chip->control_unit.host_semaphores().share(kFromHost);
   run([](Machine& machine) {
     allocate_host_semaphores(machine);
     const Semaphore done = machine.allocate_semaphore("done");

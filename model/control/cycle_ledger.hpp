@@ -1,0 +1,52 @@
+#pragma once
+
+#include "model/control/control_statistics.hpp"
+#include "model/observe/control_observer.hpp"
+#include "model/time/cycles.hpp"
+
+namespace model {
+
+/// The firmware's cycle, and what each cycle went to. Moves the cycle on, adds it to its cause and tells the
+/// observer.
+class CycleLedger {
+ public:
+  /// The firmware begins at `cycle`.
+  void start(Cycles cycle) { start_cycle_ = now_ = cycle; }
+  Cycles start_cycle() const { return start_cycle_; }
+  /// The firmware's cycle, at or ahead of SystemC's time.
+  Cycles now() const { return now_; }
+
+  /// @param semaphore the one waited on or operated on, -1: none
+  void spend(CycleCause cause, Cycles cycles, int semaphore = -1);
+  /// Spends up to `cycle`; does nothing when that is over.
+  void spend_until(Cycles cycle, CycleCause cause, int semaphore = -1) {
+    if (cycle > now_) spend(cause, cycle - now_, semaphore);
+  }
+  /// The next cycles go to `cause`; how many is not known yet.
+  void report_begin(CycleCause cause, int semaphore = -1);
+  void report_thread(int thread, ThreadState state);
+
+  /// Waits for programmed I/O since this was asked for the last time.
+  PioWaits take_waits();
+
+  /// @param sync_cycles after so many cycles at most, what was reported must become the present
+  void set_observer(ControlObserver* observer, Cycles sync_cycles);
+  ControlObserver* observer() const { return observer_; }
+  /// Whether sync_cycles are over. If so, they begin anew.
+  bool observer_is_due();
+
+  ControlStatistics& statistics() { return statistics_; }
+  const ControlStatistics& statistics() const { return statistics_; }
+
+ private:
+  Cycles start_cycle_ = 0;
+  Cycles now_ = 0;
+  ControlStatistics statistics_;
+  PioWaits waits_taken_;
+
+  ControlObserver* observer_ = nullptr;
+  Cycles sync_cycles_ = 0;
+  Cycles next_sync_ = 0;
+};
+
+}  // namespace model

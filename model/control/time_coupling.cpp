@@ -1,0 +1,56 @@
+#include "model/control/time_coupling.hpp"
+
+namespace model {
+
+void TimeCoupling::settle_pio(Cycles cycle) {
+  if (host_is_transferring()) settle_pio_beside_host(cycle);
+  pio_->settle(cycle);
+}
+
+void TimeCoupling::settle_pio_beside_host(Cycles cycle) {
+  for (auto next = pio_->next_start(); host_is_transferring() && next && *next <= cycle;
+       next = pio_->next_start()) {
+    wait_behind_host(*next);
+    pio_->settle(*next);
+  }
+  if (host_is_transferring()) wait_behind_host(cycle);
+}
+
+bool TimeCoupling::serve_next_request() {
+  const std::optional<Cycles> next = pio_->next_start();
+  if (!next || !host_is_transferring()) return pio_->serve_next();
+  settle_pio(*next);
+  return true;
+}
+
+void TimeCoupling::synchronise() {
+  settle_pio(ledger_.now());
+  wait_until(ledger_.now());
+}
+
+void TimeCoupling::synchronise_for_observer() {
+  if (ledger_.observer_is_due()) synchronise();
+}
+
+void TimeCoupling::wait_for(const sc_core::sc_event& event, std::optional<Cycles> at_the_latest) {
+  if (at_the_latest) {
+    if (host_traffic_.size() > 0) host_traffic_->book_until(*at_the_latest);
+    sc_core::wait(clock_.time_at(*at_the_latest) - sc_core::sc_time_stamp(), event);
+  } else {
+    sc_core::wait(event);
+  }
+  pio_->settle(present());
+}
+
+void TimeCoupling::wait_behind_host(Cycles cycle) {
+  wait_until(cycle);
+  sc_core::wait(sc_core::SC_ZERO_TIME);
+}
+
+void TimeCoupling::wait_until(Cycles cycle) {
+  if (host_traffic_.size() > 0) host_traffic_->book_until(cycle);
+  const sc_core::sc_time target = clock_.time_at(cycle);
+  if (target > sc_core::sc_time_stamp()) sc_core::wait(target - sc_core::sc_time_stamp());
+}
+
+}  // namespace model

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <systemc>
+
+#include "model/control/cycle_ledger.hpp"
+#include "model/network/host_traffic.hpp"
+#include "model/pio/pio_port.hpp"
+#include "model/time/clock_domain.hpp"
+
+namespace model {
+
+/// Keeps the PIO engine and SystemC time in step with the firmware, which runs ahead of them: the engine is
+/// settled up to the firmware's cycle before anything depends on it, and SystemC time follows where someone
+/// else can see it. While the host uses the network, nothing is settled ahead of SystemC time, because what
+/// the host begins next must not come after requests that were booked for later.
+class TimeCoupling {
+ public:
+  TimeCoupling(const ClockDomain& clock, CycleLedger& ledger, sc_core::sc_port<PioPort>& pio,
+               HostTrafficPort& host_traffic)
+      : clock_(clock), ledger_(ledger), pio_(pio), host_traffic_(host_traffic) {}
+
+  /// The cycle of SystemC time.
+  Cycles present() const { return clock_.cycle_at(sc_core::sc_time_stamp()); }
+
+  /// Settles the PIO engine up to `cycle`.
+  void settle_pio(Cycles cycle);
+  /// Serves the next queued request, whenever it starts; false when none is queued.
+  bool serve_next_request();
+
+  /// SystemC time catches up with the firmware.
+  void synchronise();
+  /// Makes the present of what was reported to the observer, before too much of it lies in the future.
+  void synchronise_for_observer();
+
+  /// Lets SystemC time pass until `event` or, if given, until the cycle `at_the_latest`.
+  void wait_for(const sc_core::sc_event& event, std::optional<Cycles> at_the_latest);
+
+ private:
+  bool host_is_transferring() const { return host_traffic_.size() > 0 && host_traffic_->in_progress(); }
+  void settle_pio_beside_host(Cycles cycle);
+  /// Waits until `cycle`, and lets the host's process come first in it.
+  void wait_behind_host(Cycles cycle);
+  void wait_until(Cycles cycle);
+
+  ClockDomain clock_;
+  CycleLedger& ledger_;
+  sc_core::sc_port<PioPort>& pio_;
+  HostTrafficPort& host_traffic_;
+};
+
+}  // namespace model

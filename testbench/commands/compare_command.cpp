@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "testbench/commands/commands.hpp"
+#include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/statistics_difference.hpp"
 #include "testbench/system/error.hpp"
 
@@ -35,12 +36,14 @@ Tolerance parse_tolerance(const std::string& text) {
   if (equals == 0 || used == 0 || used != number.size() || !(relative >= 0) || !std::isfinite(relative))
     throw InputError("--tolerance: found '" + text +
                      "', allowed is KEYGLOB=REL, for example chip.ddr.*=0.01");
+  require_current_key("--tolerance", text.substr(0, equals));
   return {text.substr(0, equals), relative};
 }
 
 ComparisonRules CompareCommand::rules() const {
   ComparisonRules rules;
   for (const std::string& text : tolerances) rules.tolerances.push_back(parse_tolerance(text));
+  for (const std::string& glob : ignore) require_current_key("--ignore", glob);
   rules.ignore = ignore;
   if (!with_host) rules.ignore.emplace_back("host.*");
   return rules;

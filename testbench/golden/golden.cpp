@@ -8,6 +8,7 @@
 
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
@@ -57,6 +58,7 @@ GoldenTable read_table(const fs::path& path) {
     if (cells.size() != names.size())
       throw InputError(path.string() + ":" + std::to_string(number) + ": found " +
                        std::to_string(cells.size()) + " cells, allowed are " + std::to_string(names.size()));
+    require_current_key(path.string() + ":" + std::to_string(number), cells[0]);
     for (std::size_t i = 1; i < cells.size(); ++i) {
       if (cells[i].empty()) continue;
       const Json value = Json::parse(cells[i], nullptr, false);

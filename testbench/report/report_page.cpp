@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "testbench/report/report_assets.hpp"
+#include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 #include "testbench/sweep/sweep_table.hpp"
 #include "testbench/system/error.hpp"
@@ -62,6 +63,13 @@ void require_parts(const fs::path& path, const Json& json) {
       throw InputError(path.string() + ": " + std::string(part).substr(1) +
                        ": found none; allowed: all that `" +
                        (is_sweep ? "csx600 sweep" : "csx600 render --stats") + "` writes");
+}
+
+void require_current_names(const fs::path& path, const Json& json) {
+  if (json["format"] != kSweepFormat) return require_current_keys(path, flatten(json));
+  for (const Json& point : json["points"])
+    if (point.contains("results"))
+      for (const auto& [key, value] : point["results"].items()) require_current_key(path, key);
 }
 
 std::string base64(const std::string& bytes) {
@@ -118,6 +126,7 @@ std::string report_page(const std::string& run_or_sweep, const std::string& imag
       fs::is_directory(run_or_sweep) ? fs::path(run_or_sweep) / "sweep.json" : fs::path(run_or_sweep);
   const Json json = parse(path);
   require_parts(path, json);
+  require_current_names(path, json);
   const bool is_sweep = json["format"] == kSweepFormat;
   if (is_sweep && !image.empty())
     throw InputError("--image: found with a sweep; allowed: with one run's statistics");

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -114,6 +115,7 @@ Json parse_statistics(const std::string& text, const std::string& origin) {
   const std::string format = has(json, "format") ? value_of(json["format"]) : "no format";
   if (format != kStatisticsFormat)
     throw InputError(origin + ": format: found '" + format + "', allowed is '" + kStatisticsFormat + "'");
+  require_current_keys(origin, flatten(json));
   require_counters(json, origin);
   return json;
 }

@@ -16,8 +16,8 @@ inline constexpr const char* kStatisticsFormat = "csx600-statistics-1";
 using FlatStatistics = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
 FlatStatistics flatten(const nlohmann::ordered_json& statistics);
 
-/// Throws InputError, one line that names the file, when it cannot be read, is not JSON, has another format
-/// or lacks a counter.
+/// Throws InputError, one line that names the file, when it cannot be read, is not JSON, has another format,
+/// calls a counter by an old name (renamed_keys.hpp) or lacks one.
 nlohmann::ordered_json read_statistics(const std::string& path);
 /// The same of a text that came from `origin`.
 nlohmann::ordered_json parse_statistics(const std::string& text, const std::string& origin);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "model/time/cycles.hpp"
@@ -24,12 +25,15 @@ struct BlockWindow {
 
 struct WaveConfig {
   WaveSelection selection;
-  /// What is recorded; nothing named: the whole run.
+  /// What is recorded: the whole run when there is neither kind of window.
   std::vector<CycleWindow> windows;
   std::vector<BlockWindow> blocks;
 };
 
 /// Throws WaveError if the selection or a window is empty.
 void check_waves(const WaveConfig& config, const ChipConfig& chip);
+
+/// The windows for a message: "from cycle 100 to before cycle 200, from block 3 on".
+std::string text_of_windows(const WaveConfig& config);
 
 }  // namespace model

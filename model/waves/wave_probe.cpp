@@ -7,55 +7,9 @@
 namespace model {
 namespace {
 
-/// Approximately timed, read data are reported when the memory answers, up to a burst after the first of
-/// them.
+/// How late a unit may report: approximately timed, read data are reported when the memory answers, up to a
+/// burst after their first byte.
 constexpr Cycles kLatestReport = 2000;
-
-std::string number(std::uint64_t value) {
-  return std::to_string(value);
-}
-
-std::string text_of_windows(const WaveConfig& config) {
-  std::string text;
-  const auto add = [&](const std::string& window) { text += (text.empty() ? "" : ", ") + window; };
-  for (const CycleWindow& window : config.windows)
-    add("from cycle " + number(window.first) +
-        (window.last == CycleWindow{}.last ? " on" : " to before cycle " + number(window.last)));
-  for (const BlockWindow& window : config.blocks) add("from block " + number(window.first) + " on");
-  return text;
-}
-
-std::uint64_t initial_value(WaveSignal signal) {
-  switch (signal) {
-    case WaveSignal::control_semaphore:
-      return kNoSemaphore;
-    case WaveSignal::pio_load_request:
-    case WaveSignal::pio_save_request:
-      return kNoRequest;
-    case WaveSignal::bins_load_block:
-    case WaveSignal::bins_compute_block:
-    case WaveSignal::bins_save_block:
-      return kNoBlock;
-    default:
-      return 0;
-  }
-}
-
-WaveRecorder::Rule rule_of(WaveSignal signal) {
-  switch (signal) {
-    // Taken when a request is booked and shown when it is over, and two engines overtake each other.
-    case WaveSignal::clear_connect_pio_bytes:
-    case WaveSignal::ddr_page_hits:
-    case WaveSignal::ddr_page_misses:
-    case WaveSignal::ddr_bytes_read:
-    case WaveSignal::ddr_bytes_written:
-      return WaveRecorder::Rule::maximum;
-    case WaveSignal::pe_transfer:
-      return WaveRecorder::Rule::set_or_clear;
-    default:
-      return WaveRecorder::Rule::assign;
-  }
-}
 
 bool is_load(const PioEvent& event) {
   return event.direction == cn::Direction::mono_to_poly;
@@ -70,37 +24,7 @@ WaveSignal next(WaveSignal signal) {
   return static_cast<WaveSignal>(int(signal) + 1);
 }
 
-/// Banks have a stream each, which costs time at every cycle.
-std::size_t banks_shown(const std::vector<WaveInstance>& signals, const ChipConfig& chip) {
-  const bool any = std::any_of(signals.begin(), signals.end(), [](const WaveInstance& signal) {
-    return signal.info->count == WaveCount::bank;
-  });
-  return any ? std::size_t(chip.ddr.banks) : 0;
-}
-
 }  // namespace
-
-void check_waves(const WaveConfig& config, const ChipConfig& chip) {
-  for (const CycleWindow& window : config.windows)
-    if (window.first >= window.last)
-      throw WaveError("waves: found a window from cycle " + number(window.first) + " to before cycle " +
-                      number(window.last) + "; allowed: one that ends after it begins");
-  for (const BlockWindow& window : config.blocks)
-    if (window.first == 0 || window.count == 0)
-      throw WaveError("waves: found a window of " + number(window.count) + " blocks from block " +
-                      number(window.first) + " on; allowed: at least one, counted from 1");
-  select_waves(chip, config.selection);
-}
-
-std::uint64_t WaveProbe::Numbering::operator()(const char* name) {
-  const auto found = std::find(literals.begin(), literals.end(), name);
-  const auto index = std::uint64_t(found - literals.begin());
-  if (found == literals.end()) {
-    literals.push_back(name);
-    texts.emplace_back(name);
-  }
-  return index + 1;
-}
 
 WaveProbe::WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& config, const ChipConfig& chip,
                      TextSink sink, MemorySampler memory)
@@ -108,49 +32,21 @@ WaveProbe::WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& conf
       chip_(chip),
       clock_(chip.chip.clock_hz),
       memory_(std::move(memory)),
-      signals_((check_waves(config, chip), select_waves(chip, config.selection))),
-      recorder_(std::move(sink), recorded_signals(signals_), clock_,
-                std::size_t(first_bank_stream) + banks_shown(signals_, chip)),
+      signals_((check_waves(config, chip), ShownSignals(chip, config.selection))),
+      recorder_(std::move(sink), signals_.to_record(), clock_,
+                // Banks have a stream each, which costs time at every cycle.
+                std::size_t(first_bank_stream) +
+                    (signals_.any_of_banks() ? std::size_t(chip.ddr.banks) : std::size_t(0))),
+      shows_counters_(signals_.any_of_memory_counters()),
+      shows_pes_(signals_.any_of_pes()),
       windows_text_(text_of_windows(config)),
-      blocks_(config.blocks) {
-  place_signals();
-  shows_counts_ = shows(WaveSignal::ddr_page_hits) || shows(WaveSignal::ddr_page_misses) ||
-                  shows(WaveSignal::ddr_bytes_read) || shows(WaveSignal::ddr_bytes_written) ||
-                  shows(WaveSignal::clear_connect_pio_bytes);
-  shows_pes_ = shows(WaveSignal::pe_enabled) || shows(WaveSignal::pe_transfer);
-  open_windows(config);
+      blocks_(config.blocks, recorder_) {
+  for (const CycleWindow& window : config.windows) recorder_.add_window(window);
+  if (config.windows.empty() && config.blocks.empty()) recorder_.add_window({});
   SC_HAS_PROCESS(WaveProbe);
   SC_METHOD(advance);
   sensitive << wake_;
   dont_initialize();
-}
-
-std::vector<WaveRecorder::Signal> WaveProbe::recorded_signals(const std::vector<WaveInstance>& signals) {
-  std::vector<WaveRecorder::Signal> recorded;
-  for (const WaveInstance& signal : signals)
-    recorded.push_back({{wave_name_in_file(signal), signal.info->width},
-                        initial_value(signal.info->id),
-                        rule_of(signal.info->id)});
-  return recorded;
-}
-
-void WaveProbe::place_signals() {
-  places_.resize(std::size_t(kWaveSignals));
-  for (const WaveSignalInfo& info : wave_signal_table())
-    places_[std::size_t(info.id)].assign(std::size_t(wave_count(chip_, info.count)), kNotShown);
-  for (std::size_t i = 0; i < signals_.size(); ++i)
-    places_[std::size_t(signals_[i].info->id)][std::size_t(signals_[i].index)] = i;
-}
-
-bool WaveProbe::shows(WaveSignal signal) const {
-  const std::vector<std::size_t>& places = places_[std::size_t(signal)];
-  return std::any_of(places.begin(), places.end(), [](std::size_t place) { return place != kNotShown; });
-}
-
-void WaveProbe::open_windows(const WaveConfig& config) {
-  for (const CycleWindow& window : config.windows) recorder_.add_window(window);
-  if (config.windows.empty() && config.blocks.empty()) recorder_.add_window({});
-  recorder_.expect_windows(!config.blocks.empty());
 }
 
 void WaveProbe::began(CycleCause cause, Cycles start, int semaphore) {
@@ -182,7 +78,7 @@ void WaveProbe::began_kernel(const char* name, Cycles start, int enabled_pes) {
   const cn::Label& label = details_.label;
   if (label.bin != computed_label_.bin || label.block != computed_label_.block) {
     computed_label_ = label;
-    if (label.bin != nullptr) count_block(start);
+    if (label.bin != nullptr) blocks_.begin_block(start);
     change_label(control_stream, start, WaveSignal::bins_compute_bin, label);
   }
   change(control_stream, start, WaveSignal::control_kernel, kernels_(name));
@@ -213,20 +109,6 @@ std::uint64_t WaveProbe::main_class(const cn::IssueTree& issued) const {
   for (std::size_t i = 1; i < cn::kInstructionClasses; ++i)
     if (cycles(i) > cycles(most)) most = i;
   return most + 1;
-}
-
-void WaveProbe::count_block(Cycles start) {
-  ++blocks_begun_;
-  for (const BlockWindow& window : blocks_) {
-    if (blocks_begun_ == window.first) recorder_.open_at(start);
-    if (blocks_begun_ > window.first && blocks_begun_ - window.first == window.count)
-      recorder_.close_at(start);
-  }
-  recorder_.expect_windows(std::any_of(blocks_.begin(), blocks_.end(), [&](const BlockWindow& window) {
-    return blocks_begun_ < window.first || blocks_begun_ - window.first < window.count;
-  }));
-  if (recorder_.wants_more() && block_starts_.size() < kBlocksRemembered && recorder_.covers(start))
-    block_starts_.push_back(start);
 }
 
 void WaveProbe::thread_changed(int thread, ThreadState state, Cycles at) {
@@ -307,12 +189,12 @@ void WaveProbe::finish() {
   recorder_.finish(end);
   if (recorder_.last_recorded() > recorder_.first_recorded()) return;
   throw WaveError("waves: found nothing that ran in the windows (" + windows_text_ +
-                  "); allowed: windows within the run, which ended at cycle " + number(end) + " after " +
-                  number(blocks_begun_) + " blocks");
+                  "); allowed: windows within the run, which ended at cycle " + std::to_string(end) +
+                  " after " + std::to_string(blocks_.blocks_begun()) + " blocks");
 }
 
 void WaveProbe::change_memory_counters(Cycles cycle) {
-  if (!shows_counts_) return;
+  if (!shows_counters_) return;
   const MemoryCounters counters = memory_();
   change(counts_stream, cycle, WaveSignal::ddr_page_hits, counters.page_hits);
   change(counts_stream, cycle, WaveSignal::ddr_page_misses, counters.page_misses);
@@ -334,8 +216,8 @@ void WaveProbe::change_lanes(std::size_t stream, Cycles cycle, WaveSignal signal
 }
 
 void WaveProbe::change(std::size_t stream, Cycles cycle, WaveSignal signal, std::uint64_t value, int index) {
-  const std::size_t place = places_[std::size_t(signal)][std::size_t(index)];
-  if (place == kNotShown || !recorder_.wants_more()) return;
+  const std::size_t place = signals_.place(signal, index);
+  if (place == ShownSignals::kNotShown || !recorder_.wants_more()) return;
   recorder_.change(stream, cycle, place, value);
 }
 

@@ -12,6 +12,9 @@
 #include "model/config/chip_config.hpp"
 #include "model/observe/chip_observer.hpp"
 #include "model/time/clock_domain.hpp"
+#include "model/waves/block_windows.hpp"
+#include "model/waves/name_numbers.hpp"
+#include "model/waves/shown_signals.hpp"
 #include "model/waves/wave_config.hpp"
 #include "model/waves/wave_recorder.hpp"
 
@@ -58,28 +61,26 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
   void finish();
 
   /// What is recorded, in the order of the file.
-  const std::vector<WaveInstance>& signals() const { return signals_; }
-  bool shows(WaveSignal signal) const;
+  const std::vector<WaveInstance>& signals() const { return signals_.all(); }
+  bool shows(WaveSignal signal) const { return signals_.any(signal); }
   /// Whether the DDR has to report single commands.
   bool shows_ddr_commands() const {
     return shows(WaveSignal::ddr_data) || shows(WaveSignal::ddr_bank_command) ||
            shows(WaveSignal::ddr_bank_row);
   }
   /// Kernels and bins by number, the first has number 1.
-  const std::vector<std::string>& kernel_names() const { return kernels_.texts; }
-  const std::vector<std::string>& bin_names() const { return bins_.texts; }
+  const std::vector<std::string>& kernel_names() const { return kernels_.names(); }
+  const std::vector<std::string>& bin_names() const { return bins_.names(); }
   /// Changes that were reported too late and are shown late. 0 as long as the observed units run ahead of
   /// SystemC time.
   std::uint64_t late_changes() const { return recorder_.late_changes(); }
   /// What the file covers.
   sc_core::sc_time window_start() const { return clock_.time_at(recorder_.first_recorded()); }
   sc_core::sc_time window_end() const { return clock_.time_at(recorder_.last_recorded()); }
-  /// When kernels of the first blocks in the windows began, up to kBlocksRemembered of them.
-  const std::vector<Cycles>& block_starts() const { return block_starts_; }
-  static constexpr std::size_t kBlocksRemembered = 8;
+  /// BlockWindows::block_starts().
+  const std::vector<Cycles>& block_starts() const { return blocks_.block_starts(); }
 
  private:
-  static constexpr std::size_t kNotShown = ~std::size_t{0};
   /// Each is in the order of time; banks follow.
   enum Stream : std::uint8_t {
     control_stream,
@@ -93,47 +94,33 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
     host_stream,
     first_bank_stream
   };
-  /// Numbers from 1 for names in the order in which they first appear; string literals, compared by address.
-  struct Numbering {
-    std::vector<const char*> literals;
-    std::vector<std::string> texts;
-    std::uint64_t operator()(const char* name);
-  };
-
   void change(std::size_t stream, Cycles cycle, WaveSignal signal, std::uint64_t value, int index = 0);
   void change_lanes(std::size_t stream, Cycles cycle, WaveSignal signal, const cn::LaneMask* lanes,
                     std::uint64_t value);
   void change_label(std::size_t stream, Cycles cycle, WaveSignal bin, const cn::Label& label);
   void change_memory_counters(Cycles cycle);
-  void count_block(Cycles start);
   std::uint64_t main_class(const cn::IssueTree& issued) const;
   void end_control();
 
-  void place_signals();
-  static std::vector<WaveRecorder::Signal> recorded_signals(const std::vector<WaveInstance>& signals);
-  void open_windows(const WaveConfig& config);
   void advance();
   void wake_for(Cycles reported);
 
   ChipConfig chip_;
   ClockDomain clock_;
   MemorySampler memory_;
-  std::vector<WaveInstance> signals_;
-  std::vector<std::vector<std::size_t>> places_;  ///< in the file, by kind and index
+  ShownSignals signals_;
   WaveRecorder recorder_;
-  bool shows_counts_;
+  bool shows_counters_;
   bool shows_pes_;
   std::string windows_text_;  ///< for messages
 
-  std::vector<BlockWindow> blocks_;
-  std::uint64_t blocks_begun_ = 0;
-  std::vector<Cycles> block_starts_;
+  BlockWindows blocks_;
   cn::Label computed_label_;
   std::vector<int> fill_by_block_;
   std::uint64_t fill_ = 0;
   KernelDetails details_{nullptr, nullptr, {}};
-  Numbering kernels_;
-  Numbering bins_;
+  NameNumbers kernels_;
+  NameNumbers bins_;
 
   std::optional<std::pair<Cycles, CycleCause>> span_;  ///< that began last
   Cycles control_finish_ = 0;                          ///< of the last span

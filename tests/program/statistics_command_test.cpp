@@ -79,6 +79,24 @@ TEST_F(StatisticsCommands, EqualRunsCompareEqualWhateverTheHostsTimes) {
   EXPECT_EQ(run({"compare", "a.json", "b.json", "--host"}).exit_code, 1);
 }
 
+TEST_F(StatisticsCommands, OldNamesAreRefusedWithTheirNewOnes) {
+  render({"--stats", "a.json"});
+  std::string text = read("a.json");
+  const std::string current = "\"transfers\"";
+  ASSERT_NE(text.find(current), std::string::npos);
+  text.replace(text.find(current), current.size(), "\"host_dmas\"");
+  std::ofstream(directory() / "old.json") << text;
+  const std::string found =
+      "chip.host_link.host_dmas: found the key's old name, allowed is chip.host_link.transfers";
+  expect_error({"stats", "old.json"}, 2, "old.json: " + found);
+  expect_error({"compare", "a.json", "old.json"}, 2, "old.json: " + found);
+  expect_error({"report", "old.json"}, 2, "old.json: " + found);
+  expect_error({"compare", "a.json", "a.json", "--ignore", "chip.host_link.host_dmas"}, 2,
+               "--ignore: " + found);
+  expect_error({"compare", "a.json", "a.json", "--tolerance", "chip.host_link.host_dmas=1"}, 2,
+               "--tolerance: " + found);
+}
+
 TEST_F(StatisticsCommands, AnotherChipIsADifferenceThatIsShown) {
   render({"--stats", "a.json"});
   render({"--stats", "b.json", "--set", "pio.setup_cycles=300"});

@@ -181,6 +181,9 @@ TEST_F(Golden, FilesThatAreNoTablesAreRefusedByName) {
   EXPECT_EQ(refused("key,one,two\na,1,2\nb,,3\n"), "");
   EXPECT_EQ(refused("").rfind("a.csv: not a table of golden runs", 0), 0u);
   EXPECT_EQ(refused("key,one,two\na,1,2\nb,3\n"), "a.csv:3: found 2 cells, allowed are 3");
+  EXPECT_EQ(
+      refused("key,one\nchip.host_link.host_dmas,1\n"),
+      "a.csv:2: chip.host_link.host_dmas: found the key's old name, allowed is chip.host_link.transfers");
 }
 
 }  // namespace

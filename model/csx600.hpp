@@ -17,7 +17,7 @@
 
 namespace model {
 
-/// What mono memory is.
+/// What stands for mono memory.
 enum class MonoMemory : std::uint8_t {
   ddr,            ///< MonoDdr
   bound_outside,  ///< any TLM-2.0 target of ddr.size_bytes, bound to clear_connect.ddr_socket before the run
@@ -40,13 +40,13 @@ class Csx600 : public sc_core::sc_module {
 
  public:
   const ClockDomain clock;
-  const std::unique_ptr<EventQueue> event_queue;  ///< approximately timed only
+  const std::unique_ptr<EventQueue> event_queue;  ///< null when loosely timed
   PeArray pe_array;
   ControlUnit control_unit;
   PolySram poly_sram;
   PioEngine pio_engine;
   ClearConnect clear_connect;
-  const std::unique_ptr<MonoDdr> mono_ddr;  ///< none if the memory is bound outside
+  const std::unique_ptr<MonoDdr> mono_ddr;  ///< null if the memory is bound outside
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }

@@ -23,18 +23,18 @@ struct ChipConfig {
   struct Poly {
     int sram_bytes;
     double code_quality_factor;  ///< cycles of code = this x (instructions . cost table)
-    bool vector_loads_overlap;   ///< with vector arithmetic of the same kernel
+    bool vector_loads_overlap;   ///< vector loads run beside vector arithmetic of the same kernel
     std::array<double, cn::kInstructionClasses> cycles;  ///< by instruction class; `sram` is per 4-byte word
   } poly;
 
   struct Control {
     int data_cache_bytes;
     int cache_line_bytes;
-    int cache_miss_cycles;     ///< in the control unit, on top of what the memory takes
+    int cache_miss_cycles;     ///< cost in the control unit, on top of what the memory takes
     int semaphore_cycles;      ///< a signal or an unblocked wait
     int transfer_call_cycles;  ///< software that starts an asynchronous copy
     int threads;               ///< hardware threads, the firmware's first one included
-    int thread_switch_cycles;  ///< from one hardware thread to another
+    int thread_switch_cycles;  ///< a switch from one hardware thread to another
   } control;
 
   struct Pio {
@@ -46,7 +46,7 @@ struct ChipConfig {
     int misalignment_cycles;  ///< a PE whose piece is off 8 bytes or spread over more packets than it needs
     bool consolidate_equal_addresses;
     int stolen_sram_cycles;   ///< SRAM port cycles taken for 8 bytes
-    int outstanding_packets;  ///< on the way at a time; loosely timed there is no bound
+    int outstanding_packets;  ///< at most so many on the way; loosely timed there is no bound
   } pio;
 
   struct ClearConnect {
@@ -67,25 +67,25 @@ struct ChipConfig {
     int refresh_interval_cycles;  ///< 0: no refresh
     int refresh_cycles;
     int ecc_cycles;          ///< added to each access
-    int queue_transactions;  ///< taken at a time; loosely timed there is no bound
+    int queue_transactions;  ///< at most so many at a time; loosely timed there is no bound
   } ddr;
 
   struct Host {
     double bytes_per_second;
-    int latency_cycles;  ///< of one host DMA
+    int latency_cycles;  ///< before the bytes of each of the host's DMAs
   } host;
 
-  /// What things take in joules, to first order. Counters times these after the run; no cycle depends on
-  /// them.
+  /// Energy to first order: after a run, counters are multiplied by these. No cycle depends on them.
   struct Energy {
-    double chip_scale;                                       ///< factor for all on-chip picojoules below
-    std::array<double, cn::kInstructionClasses> picojoules;  ///< of an enabled PE, by class; `mono` is unused
-    double pe_clock_picojoules;                              ///< a PE and cycle, enabled or not
-    double control_unit_picojoules;                          ///< a cycle that the control unit does not wait
-    double pio_picojoules_per_byte;                          ///< moved by the PIO engine
-    double clear_connect_picojoules;                         ///< a byte and hop
+    double chip_scale;  ///< factor for all on-chip picojoules below
+    std::array<double, cn::kInstructionClasses>
+        picojoules;                   ///< an instruction of an enabled PE, by class; `mono` is unused
+    double pe_clock_picojoules;       ///< a PE and cycle, enabled or not
+    double control_unit_picojoules;   ///< a cycle that the control unit does not wait
+    double pio_picojoules_per_byte;   ///< moved by the PIO engine
+    double clear_connect_picojoules;  ///< a byte and hop
     double leakage_watts_per_pe;
-    double leakage_watts;            ///< of all but the PEs
+    double leakage_watts;            ///< everything but the PEs
     double ddr_activate_picojoules;  ///< a page miss
     double ddr_read_picojoules;      ///< a byte
     double ddr_write_picojoules;     ///< a byte

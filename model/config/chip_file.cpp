@@ -45,7 +45,7 @@ toml::table parse(const std::string& file) {
   }
 }
 
-/// How an error message shows a value that is of no use.
+/// Shows an unusable value in an error message.
 std::string found_text(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (node.is_array()) return "an array";

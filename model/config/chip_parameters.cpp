@@ -56,7 +56,7 @@ const ParameterInfo& known_parameter(std::string_view key, std::string_view orig
       origin, parameter.key + ": found '" + std::string(found) + "'; allowed: " + allowed_text(parameter)));
 }
 
-/// A value of the wrong type with its type, which the text alone does not show ("150", 150.0).
+/// Describes a value of the wrong type by its type, too, which the text alone does not show ("150", 150.0).
 std::string typed_text(const ParameterValue& value) {
   constexpr std::array<std::string_view, 4> kTypes = {"boolean ", "integer ", "real ", "string "};
   return std::string(kTypes[value.index()]) + value_text(value);
@@ -70,7 +70,7 @@ std::optional<ParameterValue> parse_number(std::string_view text) {
   return ParameterValue(number);
 }
 
-/// `text` as the kind of value that `parameter` holds; nothing if it is not one.
+/// Reads `text` as the kind of value that `parameter` holds; std::nullopt if it is not one.
 std::optional<ParameterValue> parse(const ParameterInfo& parameter, std::string_view text) {
   const Overloaded parser{[&](const TrueOrFalse&) -> std::optional<ParameterValue> {
                             if (text == "true") return ParameterValue(true);
@@ -83,7 +83,7 @@ std::optional<ParameterValue> parse(const ParameterInfo& parameter, std::string_
   return std::visit(parser, parameter.allowed);
 }
 
-/// Kind and range. NaN is in no range.
+/// Checks kind and range. NaN is in no range.
 bool is_allowed(const ParameterInfo& parameter, const ParameterValue& value) {
   if (parameter.allowed.index() != value.index()) return false;
   const Overloaded check{
@@ -113,7 +113,7 @@ std::string real_text(double number) {
   return {buffer.data(), result.ptr};
 }
 
-/// What must hold between two parameters; both are named, the range of each alone has been checked.
+/// A rule between two parameters, whose message names both. The range of each alone has been checked.
 void require(bool holds, const ChipConfig& config, std::string_view key, const std::string& allowed,
              std::string_view other_key, std::string_view origin) {
   if (holds) return;

@@ -53,7 +53,7 @@ using Choice = std::vector<std::string_view>;
 using Allowed =
     std::variant<TrueOrFalse, IntegerRange, RealRange, Choice>;  // alternatives as in ParameterValue
 
-/// How far a parameter reaches.
+/// What a parameter can change.
 enum class Effect : std::uint8_t {
   timing,  ///< when things happen: what the firmware asks of its machine, and so the image, stays the same
   stream,  ///< also what the firmware asks of its machine
@@ -62,10 +62,10 @@ enum class Effect : std::uint8_t {
 /// One parameter: the only declaration of its key, default, range, source and effect.
 struct ParameterInfo {
   std::string key;   ///< "pio.setup_cycles": group and field of ChipConfig
-  std::string unit;  ///< "-" for a number without one
+  std::string unit;  ///< "-": the number has none
   ParameterValue default_value;
   Allowed allowed;
-  Confidence confidence;  ///< of the default
+  Confidence confidence;  ///< how well the default is known
   std::string meaning;    ///< sources in brackets: ids of parameter_sources()
 
   ParameterValue (*read)(const ChipConfig&);
@@ -74,14 +74,14 @@ struct ParameterInfo {
   Effect effect = Effect::timing;
 };
 
-/// Every parameter, those of a group one after the other.
+/// Every parameter, group by group.
 const std::vector<ParameterInfo>& parameter_table();
 
 struct ParameterSource {
   std::string_view id;
   std::string_view title;
 };
-/// What the bracketed ids in meanings stand for.
+/// The sources that bracketed ids in meanings stand for.
 const std::vector<ParameterSource>& parameter_sources();
 
 /// nullptr for an unknown key.
@@ -97,7 +97,7 @@ std::string value_text(const ParameterValue& value);
 ChipConfig default_chip_config();
 
 /// Sets one parameter. `origin` says where the value is from ("chip.toml:7", "--set"). Throws ConfigError and
-/// leaves `config` as it was if the key is unknown, or the value is not one or out of range.
+/// leaves `config` as it was if the key is unknown, or the value has the wrong type or is out of range.
 void set_parameter(ChipConfig& config, std::string_view key, std::string_view text, std::string_view origin);
 void set_parameter_value(ChipConfig& config, std::string_view key, const ParameterValue& value,
                          std::string_view origin);

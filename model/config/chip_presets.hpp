@@ -8,7 +8,7 @@
 
 namespace model {
 
-/// A parameter that a preset sets differently, or the same for a reason of its own.
+/// A parameter that a preset sets: to another value than the default, or to the same for a reason of its own.
 struct PresetOverride {
   std::string_view key;
   std::string_view value;  ///< as `--set` reads it
@@ -19,7 +19,7 @@ struct PresetOverride {
 /// A named chip: the defaults of the parameter table with these overrides.
 struct Preset {
   std::string_view name;
-  std::string_view summary;  ///< with what the preset assumes and does not model
+  std::string_view summary;  ///< says what the preset assumes and does not model, too
   std::vector<PresetOverride> overrides;
 };
 

@@ -6,7 +6,8 @@
 
 #include "model/config/chip_parameters.hpp"
 
-/// How the parameter table ties a declaration to its field of ChipConfig. For its sources only.
+/// Ties a declaration of the parameter table to its field of ChipConfig. Only the table's own sources include
+/// this.
 namespace model {
 
 inline ParameterValue to_value(bool field) {
@@ -69,7 +70,7 @@ ParameterInfo real(std::string key, std::string unit, double default_value, Real
           confidence,     std::move(meaning), &F::read,      &F::write};
 }
 
-/// What things take in joules (energy_parameters.cpp).
+/// Declares the energy parameters (energy_parameters.cpp).
 void declare_energy(std::vector<ParameterInfo>& table);
 
 }  // namespace model

@@ -10,7 +10,7 @@
 namespace model {
 namespace {
 
-/// What is known of a parameter's value in one chip.
+/// A parameter's value in one chip, and where it comes from.
 struct Provenance {
   std::string_view confidence;
   std::string_view preset_reason;  ///< empty unless the preset gives the value
@@ -31,7 +31,7 @@ Provenance provenance(const ChipConfig& config, const ParameterInfo& parameter) 
 
 using Row = std::vector<std::string>;
 
-/// Left-justified columns two blanks apart; the last is as long as it is.
+/// Left-justified columns two blanks apart; the last is not padded.
 void write_rows(std::ostream& out, const std::vector<Row>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const Row& row : rows) {

@@ -9,7 +9,7 @@ namespace {
 
 using cn::InstructionClass;
 
-/// Of what firmware sees: another value lets it do other things, not only at other times.
+/// Marks a parameter that firmware sees: another value changes what it does, not only when.
 ParameterInfo seen_by_firmware(ParameterInfo parameter) {
   parameter.effect = Effect::stream;
   return parameter;

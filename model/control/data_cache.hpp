@@ -18,7 +18,7 @@ class DataCache {
   std::uint64_t line_bytes() const { return line_bytes_; }
   std::uint64_t line_of(cn::MonoAddress address) const { return address / line_bytes_; }
 
-  /// True when the line is there; otherwise it is after this call.
+  /// Whether the line is in the cache. If not, it is loaded.
   bool touch(std::uint64_t line) {
     std::uint64_t& tag = tags_[std::size_t(line % tags_.size())];
     const bool hit = tag == line;

@@ -9,8 +9,8 @@
 
 namespace model {
 
-/// The chip's semaphores, each as the cycles at which signals that nobody has taken arrive. A signal may be
-/// known before it arrives.
+/// The signals of the chip's semaphores that nobody has taken, each as the cycle at which it arrives. A
+/// signal may be known before it arrives.
 class SemaphoreFile {
  public:
   void signal(int index, Cycles at) {
@@ -20,7 +20,7 @@ class SemaphoreFile {
     pending.insert(position, at);
   }
 
-  /// Takes the earliest signal and returns when it arrives; nothing when none is known.
+  /// Takes the earliest signal and returns when it arrives; std::nullopt when none is known.
   std::optional<Cycles> take(int index) {
     auto& pending = pending_.at(std::size_t(index));
     if (pending.empty()) return std::nullopt;
@@ -37,7 +37,7 @@ class SemaphoreFile {
   /// Signals known and not taken, arrived or not.
   int count(int index) const { return static_cast<int>(pending_.at(std::size_t(index)).size()); }
 
-  /// When the earliest signal arrives that nobody has taken; nothing when none is known.
+  /// When the earliest signal that nobody has taken arrives; std::nullopt when none is known.
   std::optional<Cycles> first_signal(int index) const {
     const auto& pending = pending_.at(std::size_t(index));
     return pending.empty() ? std::nullopt : std::optional(pending.front());

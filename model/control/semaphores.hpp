@@ -25,7 +25,7 @@ class Semaphores {
     file_.signal(semaphore, at);
     record_.signalled(semaphore, by, at);
   }
-  /// Takes the earliest signal and returns when it arrives; none when none is known.
+  /// Takes the earliest signal and returns when it arrives; std::nullopt when none is known.
   std::optional<Cycles> take(int semaphore) { return file_.take(semaphore); }
   const SemaphoreFile& file() const { return file_; }
 

@@ -11,7 +11,7 @@
 
 namespace model {
 
-/// Which of the hardware threads has the control unit (csx600.md, section 1: fixed priority, switch when the
+/// Decides which hardware thread has the control unit (csx600.md, section 1: fixed priority, switch when the
 /// running thread waits on a semaphore). One runs; it goes on until it waits for a signal that has not
 /// arrived, or until a thread of higher priority is ready. Among ready threads the highest priority runs,
 /// among equals the one that was started first; equals do not take over from each other.
@@ -44,14 +44,15 @@ class ThreadScheduler {
   int running() const { return running_; }
   /// Threads that are not over.
   int alive() const { return alive_; }
-  /// What `thread` waits for; nothing when it is ready.
+  /// The semaphore that `thread` waits for; std::nullopt when it is ready.
   std::optional<int> waits_for(int thread) const { return threads_[std::size_t(thread)].waits_for; }
   bool any_waits_for(const std::function<bool(int semaphore)>& is_meant) const;
 
-  /// The thread that can run next, and when, from `now` on: by the signals that are known. Nothing when none
-  /// can.
+  /// The thread that can run next from `now` on, and when, by the signals that are known. std::nullopt when
+  /// none can.
   std::optional<Ready> next(const SemaphoreFile& semaphores, Cycles now) const;
-  /// A thread of higher priority than the running one's that is ready at `now`.
+  /// A thread of higher priority than the running one that is ready at `now`; std::nullopt when there is
+  /// none.
   std::optional<int> takes_over(const SemaphoreFile& semaphores, Cycles now) const;
 
   /// "thread 'loads' waits on semaphore 'full', thread 'first' ..." for a fault.
@@ -61,7 +62,7 @@ class ThreadScheduler {
   struct Thread {
     std::string name;
     int priority = 0;
-    std::uint64_t order = 0;  ///< of starts
+    std::uint64_t order = 0;  ///< how many were started before it
     bool over = true;
     std::optional<int> waits_for;
   };

@@ -38,16 +38,16 @@ class WaitRecord {
   /// Direction of the latest transfer that signals `semaphore`; mono to poly before the first.
   cn::Direction latest_transfer(int semaphore) const { return started_[std::size_t(semaphore)].direction; }
 
-  /// The wait graph of a chip on which nobody can go on: a summarising line, then one a waiter, with the
-  /// semaphore's count, who can signal it and who did last; then the signals that nobody has taken. No
-  /// newline at the end.
+  /// The wait graph of a chip on which nobody can go on: a summarising line, then one line for each waiter,
+  /// with the semaphore's count, who can signal it and who did last; then the signals that nobody has taken.
+  /// No newline at the end.
   /// @param names of the semaphores that the firmware has allocated
   std::string deadlock(Cycles now, const SemaphoreFile& semaphores,
                        const std::vector<std::string>& names) const;
 
  private:
   struct Wait {
-    std::optional<int> semaphore;  ///< waited for now
+    std::optional<int> semaphore;  ///< the one waited for now
     Cycles since = 0;
     std::optional<int> taken;  ///< the one waited for last
     Cycles taken_at = 0;
@@ -58,7 +58,7 @@ class WaitRecord {
   };
   struct Started {
     std::uint64_t count = 0;
-    cn::Direction direction = cn::Direction::mono_to_poly;  ///< of the last
+    cn::Direction direction = cn::Direction::mono_to_poly;  ///< direction of the last
     Cycles at = 0;
   };
 

@@ -20,7 +20,7 @@ namespace model {
 /// in time would not show it.
 ///
 /// A transfer is outstanding from its start until the firmware knows that it is over: until its semaphore was
-/// waited for, however early it finished in simulated time. What a wait tells: the engine finishes the
+/// waited for, however early it finished in simulated time. A wait tells this much: the engine finishes the
 /// transfers of one direction in the order in which they were started, under every arbitration (PioQueue);
 /// nothing else is certain. So a transfer is over once its semaphore has been waited for more often than it
 /// can have been signalled before this transfer: by transfers of its own direction started earlier, and by
@@ -37,12 +37,12 @@ namespace model {
 /// mono memory is judged where the control unit asks for it (Machine::read_mono).
 class HazardChecker : public cn::AccessObserver {
  public:
-  /// The machine's cycle, of a machine that has a clock.
+  /// The machine's cycle; empty for a machine without a clock.
   using Clock = std::function<Cycles()>;
 
   explicit HazardChecker(const cn::Machine& machine, Clock clock = {});
 
-  /// What messages call these bytes of mono memory.
+  /// A name for these bytes of mono memory, for messages.
   void name_mono(const std::string& name, const MonoRange& range) { mono_names_.push_back({name, range}); }
 
   /// Throws the first hazard, or one if a transfer was never waited for: nobody knows that its data are
@@ -57,8 +57,8 @@ class HazardChecker : public cn::AccessObserver {
   /// Transfers with data so far.
   std::uint64_t requests() const { return next_id_; }
 
-  // These throw cn::MachineFault, one line, but what a kernel or the host may be in the midst of:
-  // touches_poly(), waited() and signalled().
+  // These throw cn::MachineFault, one line, except touches_poly(), waited() and signalled(), which a kernel
+  // or the host may be in the midst of.
   void kernel_begins(const char* kernel) override;
   void touches_poly(cn::Access access, cn::PolySpan bytes, int first_pe,
                     std::uint32_t enabled) noexcept override;
@@ -77,14 +77,14 @@ class HazardChecker : public cn::AccessObserver {
     bool is_addresses = false;
   };
   struct Request {
-    std::uint64_t id = 0;  ///< the PIO engine's: the transfers with data, in the order of their start
+    std::uint64_t id = 0;  ///< as the PIO engine numbers it: transfers with data, by start
     cn::Direction direction = cn::Direction::mono_to_poly;
     cn::PolySpan span;
     std::optional<cn::PolySpan> addresses;
     cn::LaneMask pes;
     cn::Semaphore done;
     Cycles started = 0;
-    std::uint64_t of_direction = 0;  ///< how many of its direction and semaphore were started before
+    std::uint64_t of_direction = 0;  ///< transfers of its direction and semaphore started before it
     MonoFootprint mono;
     bool seen_by_untimed_work = false;
 

@@ -34,7 +34,7 @@ class MonoFootprint {
   cn::LaneMask enabled_;
   int num_pes_ = 0;
   cn::MonoPlaces array_;
-  std::vector<cn::MonoAddress> starts_;  ///< of a gather or scatter, by enabled PE; empty for an array
+  std::vector<cn::MonoAddress> starts_;  ///< by enabled PE, for a gather or scatter; empty for an array
 };
 
 }  // namespace model

@@ -9,21 +9,22 @@
 
 namespace model {
 
-/// Which 8-byte words of which PEs' SRAM outstanding transfers read and write: one bit a PE and word, so that
-/// a kernel's access is judged by one look.
+/// Which 8-byte words of which PEs' SRAM outstanding transfers read and write: one bit per PE and word, so
+/// that a kernel's access is judged by one look.
 class PolyOccupancy {
  public:
   explicit PolyOccupancy(const cn::PolyMemory& memory);
 
   void add(cn::Access access, cn::PolySpan span, const cn::LaneMask& pes);
-  /// Takes the bits of all transfers there; those that stay are to be added again.
+  /// Clears the bits of all transfers there; the caller adds those that stay again.
   void remove(cn::Access access, cn::PolySpan span, const cn::LaneMask& pes);
 
-  /// A word that PEs first_pe + i touch, for every bit i of `pes`, against what a transfer does to it.
+  /// A word that a PE touches although a transfer uses it.
   struct Conflict {
     int offset_bytes = -1;  ///< none when negative
     int pe = -1;
   };
+  /// An access by the PEs first_pe + i, for every bit i of `pes`.
   Conflict find(cn::Access access, cn::PolySpan bytes, int first_pe, std::uint32_t pes) const;
   Conflict find(cn::Access access, cn::PolySpan bytes, const cn::LaneMask& pes) const;
 

@@ -88,7 +88,7 @@ void HostLink::book(const HostPackets& packets) {
   packet.release();
 }
 
-/// With what memory holds: a write that repeats it changes nothing.
+/// Fills a write with what memory holds already, so it changes no data.
 tlm::tlm_generic_payload& HostLink::take_packet(const HostPackets& packets) {
   tlm::tlm_generic_payload& packet = pool_.take(tlm::TLM_READ_COMMAND, packets.address(), packets.bytes());
   if (packets.command() == tlm::TLM_WRITE_COMMAND) socket->transport_dbg(packet);

@@ -26,7 +26,8 @@ namespace model {
 class HostLink : public sc_core::sc_module, public HostTraffic {
  public:
   static constexpr std::uint64_t kMaxDmaBytes = HostLinkTiming::kMaxDmaBytes;
-  /// Approximately timed: packets between the link's bridge and the memory at a time (assumed).
+  /// Packets that may be between the link's bridge and the memory at a time (assumed); approximately timed
+  /// only.
   static constexpr std::size_t kOutstandingPackets = 16;
 
   tlm_utils::simple_initiator_socket<HostLink> socket{"socket"};
@@ -63,9 +64,9 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   ClockDomain clock_;
   HostLinkTiming timing_;
   Cycles free_ = 0;
-  sc_core::sc_time free_at_;  ///< the same in time
+  sc_core::sc_time free_at_;  ///< free_ as SystemC time
   PayloadPool pool_;
-  std::vector<HostPackets> unbooked_;  ///< transfers, in order
+  std::vector<HostPackets> unbooked_;  ///< transfers whose packets are not all booked yet, in order
 
   EventQueue* event_queue_;
   std::unique_ptr<AtInitiator> at_initiator_;

@@ -11,8 +11,8 @@
 
 namespace model {
 
-/// When what crosses the host link. A transfer is cut into host DMAs of at most 512 KiB (ClearSpeed's
-/// driver); each takes latency_cycles and its bytes at bytes_per_second, one after the other.
+/// How long transfers take on the host link. A transfer is cut into DMAs of the host of at most 512 KiB
+/// (ClearSpeed's driver); each takes latency_cycles and its bytes at bytes_per_second, one after the other.
 struct HostLinkTiming {
   static constexpr std::uint64_t kMaxDmaBytes = 512 * 1024;
 

@@ -18,12 +18,13 @@ DdrTiming::DdrTiming(const ChipConfig::Ddr& config)
       next_refresh_(config.refresh_interval_cycles == 0 ? ~Cycles{0}
                                                         : Cycles(config.refresh_interval_cycles)) {}
 
-/// Accesses of one direction and arrival. What each page access leaves to the next is kept here and written
-/// back once: a gather has a hundred of them, each depends on the one before, and by way of memory that takes
-/// longer (4 million segments: 103 ms, so 65 ms).
+/// A burst: accesses of one direction that arrive together. It holds the state that each page access leaves
+/// to the next, so that the compiler can keep it in registers, and writes it back once. A gather has a
+/// hundred page accesses, each of which depends on the one before: 4 million segments take 65 ms so, and 103
+/// ms with the state in memory.
 ///
 /// @tparam Division PowerOfTwo where the memory's numbers allow it, else Divisor
-/// @tparam may_be_observed whether somebody may have asked for commands
+/// @tparam may_be_observed whether an observer may have asked for commands
 template <class Division, bool may_be_observed>
 class DdrTiming::Burst {
  public:
@@ -53,7 +54,7 @@ class DdrTiming::Burst {
     return start;
   }
 
-  /// Writes back.
+  /// Writes the state back.
   Access finish(Cycles start) {
     DdrStatistics& statistics = ddr_.statistics_;
     (ddr_.bus_direction_ == BusDirection::write ? statistics.bytes_written : statistics.bytes_read) += bytes_;
@@ -67,7 +68,7 @@ class DdrTiming::Burst {
   }
 
  private:
-  /// A piece within one page.
+  /// Accesses a piece within one page.
   [[gnu::always_inline]] inline Cycles access_page(std::uint64_t page, std::uint64_t bytes) {
     const Cycles transfer_cycles = bytes_per_cycle_.quotient(bytes + bytes_per_cycle_.value() - 1);
     busy_cycles_ += transfer_cycles;
@@ -97,7 +98,7 @@ class DdrTiming::Burst {
     return start;
   }
 
-  /// Rare, and kept out of the way of what runs for every page.
+  /// Rare, so it is a function apart from the code that runs for every page.
   [[gnu::noinline, gnu::cold]] static Cycles refresh_until(DdrTiming& ddr, Cycles now, Cycles bus_free) {
     ddr.bus_free_ = bus_free;
     ddr.refresh_until(now);
@@ -110,7 +111,7 @@ class DdrTiming::Burst {
     ddr_.report_commands(banks_.remainder(page), banks_.quotient(page), hit, command, start, bus_free_);
   }
 
-  // Copies of what does not change: a store to a bank could change the original, for all the compiler knows.
+  // Copies of constants: for all the compiler knows, a store to a bank could change the originals.
   DdrTiming& ddr_;
   Bank* const bank_;
   const Division page_bytes_;
@@ -122,7 +123,7 @@ class DdrTiming::Burst {
   Cycles turn_round_;
   Cycles bus_free_;
   Cycles next_refresh_;
-  std::uint64_t page_ = kNoPage;  ///< that the access before was in
+  std::uint64_t page_ = kNoPage;  ///< page of the access before
   std::uint64_t bytes_ = 0;
   std::uint64_t pages_ = 0;
   std::uint64_t misses_ = 0;
@@ -178,7 +179,7 @@ Cycles DdrTiming::turn_round(BusDirection direction) {
 }
 
 void DdrTiming::refresh_until(Cycles now) {
-  // Of several refreshes that passed unobserved only the latest can still be felt.
+  // When several refreshes have passed unobserved, only the latest can still delay an access.
   const Cycles due = (now - next_refresh_) / refresh_interval_cycles_ + 1;
   const Cycles latest = next_refresh_ + (due - 1) * refresh_interval_cycles_;
   const Cycles over = std::max(latest, bus_free_) + refresh_cycles_;

@@ -17,27 +17,24 @@ struct DdrStatistics {
   std::uint64_t page_misses = 0;
   std::uint64_t bytes_read = 0;
   std::uint64_t bytes_written = 0;
-  std::uint64_t busy_cycles = 0;  ///< of the data bus, transfers only
+  std::uint64_t busy_cycles = 0;  ///< cycles in which the data bus transfers
   std::uint64_t turn_rounds = 0;
   std::uint64_t refreshes = 0;
 };
 
-/// When a DDR2 memory with open pages delivers. Bank = (address / page) mod banks, row = address / (page *
+/// The timing of a DDR2 memory with open pages. Bank = (address / page) mod banks, row = address / (page *
 /// banks).
 ///
 /// - The data bus is one resource, at `bytes_per_cycle`; a change of direction leaves it idle for
 /// `turn_round_cycles`.
 /// - A page hit transfers `page_hit_cycles` after its command. That latency is pipelined: hits that arrive
-/// together
-///   follow each other on the data bus without a gap.
+///   together follow each other on the data bus without a gap.
 /// - A page miss first spends (miss - hit) cycles on precharge and activation, which occupies only its bank.
-/// A bank
-///   cannot change its row before the last column command of the access before, i.e. the end of that transfer
-///   less the hit latency; so a miss right after an access to the same bank leaves the data bus idle for
-///   (miss - hit) cycles, and misses in different banks overlap.
+///   A bank cannot change its row before the last column command of the access before, i.e. the end of that
+///   transfer less the hit latency; so a miss right after an access to the same bank leaves the data bus idle
+///   for (miss - hit) cycles, and misses in different banks overlap.
 /// - Every `refresh_interval_cycles` all banks are busy for `refresh_cycles` and their rows close. A refresh
-/// that falls
-///   into booked transfers is put off until they are over.
+///   that falls into booked transfers is put off until they are over.
 /// - `ecc_cycles` lengthen the latency of an access, not the occupation of the bus.
 ///
 /// Contiguous accesses that arrive together take as long as one access over all their bytes, provided each is
@@ -47,14 +44,14 @@ class DdrTiming {
   struct Access {
     Cycles start;   ///< first byte on the data bus
     Cycles finish;  ///< after the last byte
-    bool page_hit;  ///< in every page it touches
+    bool page_hit;  ///< every page that it touches was open
   };
 
   explicit DdrTiming(const ChipConfig::Ddr& config);
 
   Access access(cn::MonoAddress address, std::uint64_t bytes, bool write, Cycles arrival);
-  /// Accesses that arrive together, one after the other; from the start of the first to the finish of the
-  /// last.
+  /// Books accesses that arrive together, one after the other. Returns the start of the first and the finish
+  /// of the last.
   Access access(const MonoPieces::Runs& runs, bool write, Cycles arrival);
 
   const DdrStatistics& statistics() const { return statistics_; }
@@ -66,17 +63,17 @@ class DdrTiming {
  private:
   static constexpr std::uint64_t kNoPage = ~std::uint64_t{0};
   struct Bank {
-    std::uint64_t open_page = kNoPage;  ///< of the memory, so it names the row
+    std::uint64_t open_page = kNoPage;  ///< number of the page in the memory, which names the row, too
     Cycles ready = 0;                   ///< when the row may change, or a refresh is over
   };
   enum class BusDirection : std::uint8_t { unused, read, write };
 
   template <class Division, bool may_be_observed>
   class Burst;
-  /// Books what `use` accesses through the burst that it is given.
+  /// Calls `use` with a burst and books what it accesses.
   template <class Use>
   Access book(bool write, Cycles arrival, const Use& use);
-  /// Cycles that the data bus rests before it moves data in that direction.
+  /// Cycles for which the data bus rests before it moves data in that direction.
   Cycles turn_round(BusDirection direction);
   /// Books the refreshes due by `now`, at least one.
   void refresh_until(Cycles now);

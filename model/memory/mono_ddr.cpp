@@ -61,7 +61,7 @@ std::optional<Cycles> MonoDdr::take(tlm::tlm_generic_payload& transaction) {
 void MonoDdr::finish(tlm::tlm_generic_payload& transaction) {
   --queued_;
   if (not_accepted_ != nullptr && not_accepted_ != &transaction) at_target_->accept(*not_accepted_);
-  not_accepted_ = nullptr;  // or its response ends its request
+  not_accepted_ = nullptr;  // unless accepted, its response ends its request
   at_target_->respond(transaction);
 }
 

@@ -48,7 +48,7 @@ class MonoDdr : public sc_core::sc_module {
 
   std::optional<Cycles> take(tlm::tlm_generic_payload& transaction);
   void finish(tlm::tlm_generic_payload& transaction);
-  /// Sets `finish` if it returns OK.
+  /// Sets `finish` if the response is OK.
   tlm::tlm_response_status access_plainly(const tlm::tlm_generic_payload& transaction, Cycles arrival,
                                           Cycles& finish);
   tlm::tlm_response_status serve(PeAddresses& addresses, sc_core::sc_time& delay);
@@ -65,7 +65,8 @@ class MonoDdr : public sc_core::sc_module {
   std::optional<AtTarget> at_target_;
   int queue_transactions_;
   int queued_ = 0;
-  tlm::tlm_generic_payload* not_accepted_ = nullptr;  ///< fills the queue; its request has not been ended
+  tlm::tlm_generic_payload* not_accepted_ =
+      nullptr;  ///< the one that filled the queue: its request has not ended
 };
 
 }  // namespace model

@@ -10,24 +10,24 @@
 
 namespace model {
 
-/// The data of mono memory as the PIO engine reaches them: by a direct pointer if the memory behind the
-/// socket grants one, else by debug transport, PE by PE. Takes no time.
+/// Reads and writes mono memory's data without taking time: through a direct pointer if the memory behind the
+/// socket grants one, else by debug transport, PE by PE.
 class MonoWindow {
  public:
   MonoWindow(std::uint64_t size_bytes, cn::PolyMemory& poly);
 
-  /// These throw cn::MachineFault naming `request` and the allowed range; of places the first PE's that is
-  /// outside, too, which takes longer than to know that none is (MonoPieces::within).
+  /// Both throw cn::MachineFault, which names `request` and the allowed range. `check_places` also names the
+  /// first offending PE, so it is slower than MonoPieces::within: use it only to report.
   void check_span(const cn::Transfer& transfer, std::uint64_t request) const;
   void check_places(const cn::Transfer& transfer, std::uint64_t request) const;
   std::uint64_t size_bytes() const { return size_bytes_; }
-  /// Of a transfer that was checked.
+  /// Moves the data of a transfer that was checked.
   void move(const cn::Transfer& transfer, tlm::tlm_fw_transport_if<>& memory);
-  /// The bytes that are at `address` now.
+  /// Copies the bytes that are at `address` now.
   void read(cn::MonoAddress address, std::uint8_t* to, std::uint64_t bytes,
             tlm::tlm_fw_transport_if<>& memory);
-  /// The bytes at `address` to look at: memory's own where it grants a pointer, else a copy that is made now
-  /// and lives as long as the window; asking again for the same address refreshes it.
+  /// Shows the bytes at `address`: in memory itself where it grants a pointer, else in a copy that lives as
+  /// long as the window and is refreshed by the next view of the same address.
   const void* view(cn::MonoAddress address, std::uint64_t bytes, tlm::tlm_fw_transport_if<>& memory);
   void write(cn::MonoAddress address, const void* from, std::uint64_t bytes,
              tlm::tlm_fw_transport_if<>& memory);

@@ -39,7 +39,7 @@ Cycles AtRouter::pass_request(Initiator initiator, tlm::tlm_generic_payload& pac
   return passage.sent;
 }
 
-/// A memory begins its response when it has sent the last byte; take it to have sent at full width.
+/// A memory begins its response when it has sent the last byte; it is taken to have sent at full width.
 Cycles AtRouter::pass_response(tlm::tlm_generic_payload& packet) {
   const Route& route = route_of(packet);
   const Cycles now = event_queue_.now();

@@ -13,16 +13,15 @@
 
 namespace model {
 
-/// How packets cross ClearConnect approximately timed. Times are those of ClearConnectTiming, asked packet by
-/// packet in the cycle in which each enters a link, so that initiators contend packet by packet:
+/// Passes packets across ClearConnect approximately timed. Their times are ClearConnectTiming's, asked in the
+/// cycle in which each packet enters a link, so that initiators contend packet by packet:
 /// - A request ends (END_REQ) when the initiator's link is free again.
 /// - It reaches the memory when the port has let it through, or when the memory has ended the request before.
-/// - Read data occupy the port when the memory begins its response, which ends (END_RESP) when the port is
-/// free
-///   again; the initiator's response begins when the last byte is there. A write's response says that the
-///   memory has the last byte; nothing crosses the network for it.
+/// - Read data occupy the port when the memory begins its response. It ends (END_RESP) when the port is
+///   free again; the initiator's response begins when the last byte is there. A write's response says that
+///   the memory has the last byte; nothing crosses the network for it.
 ///
-/// What waits for the memory stands in one line. It is bounded by what initiators have on the way.
+/// Packets that wait for the memory form one queue, as long as what the initiators have on the way at most.
 class AtRouter {
  public:
   using Backward = std::function<tlm::tlm_sync_enum(int initiator, tlm::tlm_generic_payload&, tlm::tlm_phase&,
@@ -41,11 +40,11 @@ class AtRouter {
   }
 
  private:
-  /// Where a packet comes from and how far it is; stays with the payload.
+  /// Sticky extension: where a packet comes from and how far it has come.
   struct Route : tlm::tlm_extension<Route> {
     Initiator initiator = Initiator::pio;
-    Cycles at_memory = 0;   ///< its first byte
-    Cycles sent_whole = 0;  ///< its last byte is at the memory
+    Cycles at_memory = 0;   ///< when its first byte is at the memory
+    Cycles sent_whole = 0;  ///< when its last byte is at the memory
     tlm::tlm_extension_base* clone() const override { return new Route(*this); }
     void copy_from(const tlm::tlm_extension_base& other) override {
       *this = static_cast<const Route&>(other);

@@ -69,8 +69,8 @@ void ClearConnect::pass_read(Initiator initiator, const Load& load, tlm::tlm_gen
   ddr_socket->b_transport(transaction, delay);
   if (transaction.is_response_error()) return;
   const Cycles last = cycle_of_delay(clock_, delay);
-  // A memory tells when its last byte was sent, only PeAddresses tell the first: take it to have sent at full
-  // width.
+  // A memory says when its last byte was sent, only PeAddresses say when the first was: it is taken to have
+  // sent at full width.
   const auto* const addresses = transaction.get_extension<PeAddresses>();
   const Cycles at_full_width = port_bytes_per_cycle_.quotient(load.bytes + port_bytes_per_cycle_.value() - 1);
   const Cycles first = addresses != nullptr && addresses->served

@@ -10,46 +10,46 @@
 
 namespace model {
 
-/// Who uses the on-chip network.
+/// The units that use the on-chip network.
 enum class Initiator : std::uint8_t { pio, control, host };
 inline constexpr std::size_t kInitiators = 3;
 
 struct ClearConnectStatistics {
   std::uint64_t bytes = 0;
   std::uint64_t packets = 0;
-  std::uint64_t waiting_cycles = 0;  ///< for the port to the DDR while it was taken
+  std::uint64_t waiting_cycles = 0;  ///< packets waited for the port to the DDR
 };
 
-/// When packets cross the network between an initiator and the DDR. Each initiator has a link each way at
+/// The timing of packets between an initiator and the DDR. Each initiator has a link each way at
 /// `bytes_per_cycle`; all share the DDR's port, which is as wide as the DDR (csx600.md, section 1: 8
 /// bytes/cycle a node, 16 at the DDR port). Every link and the port, each way, is a time line (next free
-/// cycle). Packets are cut through: what follows does not wait for the last byte of what goes before. A
+/// cycle). Packets are cut through: a stage passes on the first bytes before it has the last. A
 /// packet without data (a read request) takes one cycle; widths are those of the payload, so headers of data
 /// packets cost nothing more.
 class ClearConnectTiming {
  public:
   struct Passage {
-    Cycles first;  ///< the first packet is there
-    Cycles last;   ///< the last byte is there
-    Cycles sent;   ///< the initiator's link is free again
+    Cycles first;  ///< when the first packet is there
+    Cycles last;   ///< when the last byte is there
+    Cycles sent;   ///< when the initiator's link is free again
   };
 
   ClearConnectTiming(const ChipConfig::ClearConnect& config, int ddr_port_bytes_per_cycle);
 
-  /// Packets for `bytes` of contiguous mono memory.
+  /// How many packets `bytes` of contiguous mono memory are.
   std::uint64_t packets_for(std::uint64_t bytes) const {
     return packet_bytes_.quotient(bytes + packet_bytes_.value() - 1);
   }
 
-  /// `packets` read requests, sent at `now` towards the DDR.
+  /// Sends `packets` read requests towards the DDR at `now`.
   Passage request(Initiator initiator, std::uint64_t packets, Cycles now);
-  /// Data of a write towards the DDR.
+  /// Sends data of a write towards the DDR.
   Passage forward(Initiator initiator, std::uint64_t bytes, std::uint64_t packets, Cycles now);
-  /// Data of a read, which the DDR has from `first` to `last`; returns when the last byte is at the
-  /// initiator.
+  /// Sends data of a read, which the DDR delivers from `first` to `last`. Returns when the last byte is at
+  /// the initiator.
   Cycles backward(Initiator initiator, std::uint64_t bytes, std::uint64_t packets, Cycles first, Cycles last);
 
-  /// What `bytes` occupy the DDR's port for.
+  /// For how long `bytes` occupy the DDR's port.
   Cycles port_cycles(std::uint64_t bytes) const;
   Cycles backward_port_free() const { return backward_port_free_; }
 
@@ -65,7 +65,7 @@ class ClearConnectTiming {
   Divisor packet_bytes_;
   Divisor link_bytes_per_cycle_;
   Divisor port_bytes_per_cycle_;
-  Cycles latency_cycles_;  ///< of all hops, one way
+  Cycles latency_cycles_;  ///< all hops, one way
 
   std::array<Cycles, kInitiators> forward_link_free_{};
   std::array<Cycles, kInitiators> backward_link_free_{};

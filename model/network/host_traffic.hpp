@@ -19,7 +19,7 @@ class HostTraffic : public virtual sc_core::sc_interface {
   virtual bool in_progress() const = 0;
 };
 
-/// Bound or not: a network or a control unit also works without a host.
+/// May stay unbound: a network or a control unit also works without a host.
 using HostTrafficPort = sc_core::sc_port<HostTraffic, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
 
 }  // namespace model

@@ -8,7 +8,7 @@
 
 namespace model {
 
-/// Told what the chip does; what does not matter to an observer it need not define.
+/// Told what the chip does. An observer overrides only what it needs.
 class ChipObserver : public ControlObserver, public PioObserver, public HostObserver {
  public:
   void spent(CycleCause, Cycles, Cycles, int) override {}
@@ -19,7 +19,7 @@ class ChipObserver : public ControlObserver, public PioObserver, public HostObse
   void ended_transfer(bool, std::uint64_t, Cycles, Cycles) override {}
 };
 
-/// Tells several observers.
+/// Passes everything on to several observers.
 class ChipObservers : public ChipObserver {
  public:
   void add(ChipObserver& observer) { observers_.push_back(&observer); }

@@ -9,11 +9,11 @@
 
 namespace model {
 
-/// What the control unit's cycles go to. Every cycle has one cause; they add up to the run.
+/// Causes of the control unit's cycles. Every cycle has one; together they are the run.
 enum class CycleCause : std::uint8_t {
   poly,            ///< kernels on the PE array
   stolen,          ///< kernels slowed down by programmed I/O at the SRAM ports
-  mono,            ///< instructions of its own outside kernels
+  mono,            ///< instructions of the control unit outside kernels
   data_cache,      ///< waiting for a line of mono memory
   semaphore,       ///< signals and waits that did not block
   transfer_call,   ///< software that starts asynchronous copies
@@ -21,7 +21,7 @@ enum class CycleCause : std::uint8_t {
   wait_save,       ///< blocked on a semaphore of a poly-to-mono transfer
   wait_pio_queue,  ///< blocked because the PIO queue was full
   wait_host,       ///< blocked on a semaphore of the host
-  thread_switch,   ///< from one hardware thread to another
+  thread_switch,   ///< switching from one hardware thread to another
 };
 
 inline constexpr int kCycleCauses = static_cast<int>(CycleCause::thread_switch) + 1;
@@ -34,7 +34,7 @@ inline constexpr int kThreadStates = static_cast<int>(ThreadState::waiting) + 1;
 
 const char* thread_state_name(ThreadState state);
 
-/// A kernel beyond its name and time; what it points at is valid during the call.
+/// More about a kernel than its name and time. The pointers are valid during the call.
 struct KernelDetails {
   const cn::LaneMask* lanes;    ///< PEs that it was started for; null: all
   const cn::IssueTree* issued;  ///< its instructions
@@ -46,8 +46,8 @@ class ControlObserver {
  public:
   virtual ~ControlObserver() = default;
 
-  /// What the control unit does from `start` on, told before time may pass and its end is known. `spent` or
-  /// `ran_kernel` with the same start follows, unless it takes no time.
+  /// The control unit spends its time on `cause` from `start` on; told before time may pass and the end is
+  /// known. `spent` or `ran_kernel` with the same start follows, unless it takes no time.
   virtual void began(CycleCause /*cause*/, Cycles /*start*/, int /*semaphore*/) {}
   virtual void kernel_details(const KernelDetails& /*details*/) {}  ///< right before began_kernel
   virtual void began_kernel(const char* /*name*/, Cycles /*start*/, int /*enabled_pes*/) {}

@@ -9,15 +9,15 @@ namespace model {
 /// Commands that a bank of the DDR gets.
 enum class DdrCommand : std::uint8_t { activate, read, write, refresh };
 
-/// Told what the DDR does when it is booked, which may be ahead of SystemC time: on the data bus in the order
-/// of time, at each bank likewise.
+/// Told what the DDR does when it is booked, which may be ahead of SystemC time: in the order of time on the
+/// data bus and at each bank.
 class DdrObserver {
  public:
   virtual ~DdrObserver() = default;
   /// An access, which may touch many pages, has the data bus from its first byte to after its last.
   virtual void accessed(bool write, Cycles start, Cycles finish) = 0;
 
-  // Only told to those who ask for commands:
+  // Only reported to observers that ask for commands:
   /// Data of one page on the bus.
   virtual void moved_data(bool /*write*/, Cycles /*start*/, Cycles /*finish*/) {}
   /// Activation includes precharge. All banks are refreshed together: bank -1.
@@ -26,7 +26,7 @@ class DdrObserver {
 
 enum class Initiator : std::uint8_t;
 
-/// Told who uses the DDR's port of the on-chip network, each way in the order of time.
+/// Told who uses the DDR's port of the on-chip network, in the order of time for each direction.
 class PortObserver {
  public:
   virtual ~PortObserver() = default;

@@ -11,9 +11,9 @@ namespace model {
 
 /// Cycles in which the control unit did nothing but wait for programmed I/O.
 struct PioWaits {
-  Cycles load = 0;   ///< on a semaphore of a mono-to-poly transfer
-  Cycles save = 0;   ///< on a semaphore of a poly-to-mono transfer
-  Cycles queue = 0;  ///< to queue a request
+  Cycles load = 0;   ///< blocked on a semaphore of a mono-to-poly transfer
+  Cycles save = 0;   ///< blocked on a semaphore of a poly-to-mono transfer
+  Cycles queue = 0;  ///< blocked before a full queue
 
   Cycles total() const { return load + save + queue; }
   PioWaits& operator+=(const PioWaits& other) {
@@ -31,11 +31,11 @@ struct KernelStatistics {
   Cycles cycles = 0;
   cn::IssueCounts issued;
   cn::IssueCounts executed;  ///< issued, each weighted by the PEs enabled
-  PioWaits waited_before;    ///< between the kernel before this one, whichever it was, and this one
+  PioWaits waited_before;    ///< since the kernel that ran before, whichever it was
   /// [e]: runs that began with e PEs enabled, empty in total().
   std::vector<std::uint64_t> runs_by_enabled_pes;
   double issue_cycles = 0;         ///< before the code quality factor
-  double enabled_lane_cycles = 0;  ///< the same, each weighted by the PEs enabled
+  double enabled_lane_cycles = 0;  ///< issue_cycles, each weighted by the PEs enabled
 
   /// Share of the issued lane-cycles in which a PE was enabled. Counts PEs as the kernel, its loops and its
   /// any-branches were entered; the branches of a plain poly if are not told apart.

@@ -74,7 +74,7 @@ PeArray::Kernel& PeArray::kernel(const char* name) {
   return kernels_.back();
 }
 
-/// @param place of the block among those that this run issues
+/// @param place number of the block among those that this run issues
 PeArray::Block& PeArray::block(Kernel& kernel, std::size_t place, const cn::IssueCounts& counts) {
   std::vector<Block>& blocks = kernel.blocks;
   if (place < kernel.order.size()) {

@@ -21,7 +21,7 @@ class PolySram : public sc_core::sc_module {
   PolySram(const sc_core::sc_module_name& name, const ChipConfig& config, const cn::PolyMemory& memory);
 
   int bytes_in_use() const { return memory_.used_bytes(); }
-  /// The peak is looked up when programmed I/O takes a port, and now.
+  /// The peak is sampled when programmed I/O takes a port, and now.
   PolySramStatistics statistics() const;
 
  private:

@@ -52,7 +52,7 @@ bool PioPackets::packet_is_due(const Engine& engine) const {
   return (engine.pieces->write() ? packet.last_piece : packet.first_piece) < engine.addressed;
 }
 
-/// Responses come in the order of the requests: there is one way through the network.
+/// Responses come in the order of the requests, because there is one path through the network.
 bool PioPackets::data_of_next_piece_are_there(const Engine& engine) const {
   return engine.moved < engine.addressed &&
          (engine.next_to_arrive.at_end() || engine.next_to_arrive.packet().first_piece > engine.moved);

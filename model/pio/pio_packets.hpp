@@ -15,17 +15,16 @@
 
 namespace model {
 
-/// How the PIO engines serve requests approximately timed: one transaction a packet of mono memory, so that
-/// other initiators get in between, and each sent when the engine has come to its PE.
+/// The packets of the requests in service, approximately timed. Each packet of mono memory is one
+/// transaction, so that other initiators get in between, and is sent when the engine has come to its PE.
 ///
 /// An engine does one thing at a time, for as long as PioTiming says: setup, then PE by PE the address phase
 /// and the data phase.
 /// - Read: packets leave after the address phase of the first PE that they hold data for, at most
 ///   pio.outstanding_packets at a time. The engine takes further addresses as long as it may send their
 ///   packets, and writes data into a PE when they have arrived. The request is over with the last PE's data.
-/// - Write: address and data phase of a PE follow each other; a packet leaves when its last byte has come out
-/// of
-///   a PE. Posted: the request is over when its last packet has left the engine.
+/// - Write: address and data phase of a PE follow each other; a packet leaves when its last byte has come
+///   out of a PE. Posted: the request is over when its last packet has left the engine.
 ///
 /// Data have moved when the request was queued; packets carry them once more. A write that is on the way is
 /// kept equal to what memory holds, so that none brings back what a later request has replaced.
@@ -33,7 +32,7 @@ class PioPackets {
  public:
   struct Owner {
     std::function<void(int engine)> finished;
-    std::function<void(const tlm::tlm_generic_payload&)> failed;  ///< memory answered with an error
+    std::function<void(const tlm::tlm_generic_payload&)> failed;  ///< memory has answered with an error
   };
 
   PioPackets(EventQueue& event_queue, tlm::tlm_initiator_socket<>& memory, const ChipConfig& config,
@@ -41,7 +40,7 @@ class PioPackets {
 
   /// `pieces` must last until the engine has finished.
   void start(int engine, const MonoPieces& pieces);
-  /// To be called when data in mono memory have changed.
+  /// To be called when a request has changed data in mono memory.
   void refresh_writes_on_the_way();
   /// 8-byte words that have gone through PEs' SRAM ports.
   std::uint64_t words_moved() const { return bytes_moved_ / 8; }
@@ -53,13 +52,13 @@ class PioPackets {
 
  private:
   struct Engine {
-    const MonoPieces* pieces = nullptr;  ///< of the request in service
+    const MonoPieces* pieces = nullptr;  ///< pieces of the request in service; null: none
     PacketCursor next_to_send;
     PacketCursor next_to_arrive;
-    bool busy = false;  ///< with a phase
-    int addressed = 0;  ///< pieces
+    bool busy = false;  ///< in a phase that is not over
+    int addressed = 0;  ///< pieces whose addresses are sent
     int moved = 0;      ///< pieces of a read that are in their PEs
-    int unsent = 0;     ///< packets whose requests have not begun: the link is taken
+    int unsent = 0;     ///< packets that wait for the link
   };
   enum class Phase : std::uint8_t { setup, address, data };
   struct OnTheWay {

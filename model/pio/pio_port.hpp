@@ -9,8 +9,8 @@
 namespace model {
 
 /// The programmed-I/O engine as the control unit drives it. Loosely timed: the control unit runs ahead of
-/// SystemC time and passes its own cycle; what the engine decides for a cycle can no longer change once it
-/// was asked to settle it.
+/// SystemC time and passes its own cycle; once it has asked the engine to settle a cycle, what the engine
+/// decided for it no longer changes.
 class PioPort : public virtual sc_core::sc_interface {
  public:
   /// Queues a request at `now`; returns the cycle at which the control unit may go on (later than `now` when
@@ -21,10 +21,10 @@ class PioPort : public virtual sc_core::sc_interface {
   virtual void settle(Cycles now) = 0;
 
   /// Serves the next queued request, whenever it starts; false when none is queued. For a control unit that
-  /// waits and so cannot queue another one.
+  /// waits, so that no other request can come before.
   virtual bool serve_next() = 0;
 
-  /// When the next queued request starts, if no other is queued before; nothing when none waits.
+  /// When the next queued request starts, if no other is queued before; std::nullopt when none waits.
   virtual std::optional<Cycles> next_start() const = 0;
 
   /// 8-byte words that went through PEs' SRAM ports before `cycle` (which must be settled); monotonic.

@@ -11,15 +11,13 @@
 
 namespace model {
 
-/// Which queued request is served next, and when. Holds requests that wait; one in service no longer counts.
+/// Decides which queued request is served next, and when. It holds requests that wait, not those in service.
 ///
 /// - strict_fifo: in the order of arrival.
 /// - reads_overtake_writes: when the engine gets free, the oldest read goes first, otherwise the oldest
-/// write. A read is
-///   seen if it was queued before that cycle; one queued in the very cycle comes too late.
+///   write. A read is seen if it was queued before that cycle; one queued in the very cycle comes too late.
 /// - queue_per_direction: each direction has a queue of `depth` and an engine of its own; requests start in
-/// the order of
-///   their start cycles, the older one first when equal.
+///   the order of their start cycles, the older one first when equal.
 ///
 /// The choice for a cycle depends only on requests queued before it (or on the one that finds the engine
 /// idle), so it stays the same however often the engine is asked.
@@ -29,7 +27,7 @@ class PioQueue {
     std::uint64_t id;  ///< ascending in the order of arrival
     cn::Direction direction;
     Cycles enqueued;
-    int slot;  ///< the caller's
+    int slot;  ///< the caller's own number
   };
   struct Start {
     Entry entry;
@@ -40,18 +38,19 @@ class PioQueue {
 
   bool full(cn::Direction direction) const;
   int waiting() const { return static_cast<int>(engine_[0].queue.size() + engine_[1].queue.size()); }
-  /// Whether something may start at a cycle up to `now`. Quickly: the control unit asks at every turn.
+  /// Whether a request may start at a cycle up to `now`. Fast, since the control unit asks at every
+  /// operation.
   bool may_start(Cycles now) const {
     return (!engine_[0].queue.empty() && engine_[0].free <= now) ||
            (!engine_[1].queue.empty() && engine_[1].free <= now);
   }
   /// The queue of that direction must not be full.
   void push(const Entry& entry);
-  /// The next to start if nothing else arrives before.
+  /// The next request to start if no other arrives before; std::nullopt when none waits.
   std::optional<Start> next() const;
   /// Takes that request out of the queue; its engine is busy until `finish`.
   void begin(const Start& start, Cycles finish);
-  /// The same when nobody knows until when; the engine starts nothing before it is told.
+  /// The same when the end is not known yet: the engine starts no request before finish().
   void begin(const Start& start) { begin(start, kNotYetKnown); }
   void finish(int engine, Cycles finish) { engine_[std::size_t(engine)].free = finish; }
 

@@ -7,7 +7,7 @@
 
 namespace model {
 
-/// Between chip cycles and SystemC's picoseconds. Always converts from time zero, so rounding never
+/// Converts between chip cycles and SystemC's picoseconds, always from time zero, so rounding never
 /// accumulates.
 class ClockDomain {
  public:
@@ -23,8 +23,8 @@ class ClockDomain {
   }
 
  private:
-  /// By an addition: std::llround is a call, and this runs ten times a transfer. Good up to 2^52 ps, 75
-  /// minutes of simulated time; beyond that a double cannot hold half a picosecond anyway.
+  /// Rounds by an addition: std::llround is a call, and this runs ten times a transfer. Good up to 2^52 ps,
+  /// 75 minutes of simulated time; beyond that a double cannot hold half a picosecond anyway.
   static std::uint64_t nearest(double number) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(number + 0.5));
   }

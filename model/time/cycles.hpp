@@ -4,8 +4,8 @@
 
 namespace model {
 
-/// Chip time: whole cycles since the start. Apart from clock_domain.hpp so that plain timing classes need no
-/// SystemC.
+/// Chip time: whole cycles since the start. Declared apart from clock_domain.hpp, so that plain timing
+/// classes need no SystemC.
 using Cycles = std::uint64_t;
 
 /// Whole cycles that `amount` takes at `per_cycle`.

@@ -36,7 +36,7 @@ void EventQueue::schedule(Cycles cycle, Task task) {
     far_.push_back({cycle, asked_++, std::move(task)});
     std::push_heap(far_.begin(), far_.end(), later);
   }
-  // Of several notifications SystemC keeps the earliest.
+  // SystemC keeps the earliest of several notifications.
   if (!running_) wake_.notify(delay_until(cycle));
 }
 
@@ -70,7 +70,7 @@ Cycles EventQueue::next_near_cycle() const {
   return ~Cycles{0};
 }
 
-/// Tasks may ask for further ones in the same cycle.
+/// Tasks may schedule further ones in the same cycle.
 void EventQueue::do_tasks_of(Cycles cycle) {
   while (!far_.empty() && far_.front().cycle == cycle) {
     std::pop_heap(far_.begin(), far_.end(), later);
@@ -81,7 +81,7 @@ void EventQueue::do_tasks_of(Cycles cycle) {
   }
   const std::size_t list = cycle % kNear;
   std::vector<Task>& tasks = near_[list];
-  // A task may add to the list that it stands in.
+  // A task may add to this list.
   for (std::size_t i = 0; i < tasks.size(); ++i) {  // NOLINT(modernize-loop-convert)
     const Task task = std::move(tasks[i]);
     --entries_;

@@ -10,20 +10,21 @@
 
 namespace model {
 
-/// What approximately timed units have to do in later cycles, in one order for the whole chip: by cycle, then
-/// as it was asked for. One process serves all units: between processes of their own, the kernel would choose
-/// who comes first in a cycle, and a tracing process beside them could change its choice.
+/// Event queue of the approximately timed model: the tasks of all units by cycle, then in order of request.
+/// One SystemC process runs them all. If each unit had its own process, the kernel would choose which comes
+/// first in a cycle, and a tracing process beside them could change its choice.
 class EventQueue : public sc_core::sc_module {
  public:
   using Task = std::function<void()>;  ///< up to two pointers are held without allocating
 
   EventQueue(const sc_core::sc_module_name& name, const ClockDomain& clock);
 
-  /// In a cycle that is over: as soon as possible.
+  /// Runs `task` in `cycle`, or as soon as possible if that is over.
   void schedule(Cycles cycle, Task task);
   Cycles now() const { return clock_.cycle_at(sc_core::sc_time_stamp()); }
-  /// The first cycle that is not before a TLM-2.0 delay from now, and the delay that points at a cycle.
+  /// The first cycle that is not before now + `delay`.
   Cycles cycle_after(const sc_core::sc_time& delay) const;
+  /// The TLM-2.0 delay from now to `cycle`; zero if that is over.
   sc_core::sc_time delay_until(Cycles cycle) const;
 
   /// For the one process that runs firmware: waits until `cycle`, or for `event`, and then until everything
@@ -32,32 +33,31 @@ class EventQueue : public sc_core::sc_module {
   void pass_time_until(const sc_core::sc_event& event);
 
  private:
-  /// Of what lies within so many cycles each cycle has a list of its own; a power of two.
+  /// Each of the next so many cycles has a list of its own; a power of two.
   static constexpr Cycles kNear = 256;
-  static constexpr std::size_t kUsualTasks = 16;  ///< of a cycle at most; more are allocated
+  static constexpr std::size_t kUsualTasks = 16;  ///< room of a list; more are allocated
   struct FarEntry {
     Cycles cycle;
     std::uint64_t number;
     Task task;
   };
-  /// Of two entries, which comes later: std's heaps put the largest first.
+  /// Whether `a` comes after `b`: std's heaps put the largest first.
   static bool later(const FarEntry& a, const FarEntry& b) {
     return a.cycle != b.cycle ? a.cycle > b.cycle : a.number > b.number;
   }
 
   void run();
-  /// The next cycle that has entries; there must be one.
+  /// The next cycle that has tasks; there must be one.
   Cycles next_cycle() const;
   Cycles next_near_cycle() const;
   void do_tasks_of(Cycles cycle);
-  void wake_for_next();
   static void come_last();
 
   ClockDomain clock_;
-  Cycles first_ = 0;  ///< entries of cycles before are over
+  Cycles first_ = 0;  ///< earlier cycles have no tasks left
   std::array<std::vector<Task>, kNear> near_;
-  std::array<std::uint64_t, kNear / 64> near_filled_{};  ///< a bit a list
-  std::vector<FarEntry> far_;                            ///< a heap; was asked for before what is near
+  std::array<std::uint64_t, kNear / 64> near_filled_{};  ///< one bit per list
+  std::vector<FarEntry> far_;  ///< a heap; scheduled before the near tasks of the same cycle
   std::size_t entries_ = 0;
   std::uint64_t asked_ = 0;
   bool running_ = false;

@@ -12,7 +12,7 @@ bool AtInitiator::send(tlm::tlm_generic_payload& payload) {
   return false;
 }
 
-/// By way of the event queue, so that no request is sent from within a target's own call.
+/// Goes through the event queue, so that no request is sent from within a target's own call.
 void AtInitiator::send_next() {
   if (send_asked_ || in_request_ != nullptr || waiting_.empty()) return;
   send_asked_ = true;

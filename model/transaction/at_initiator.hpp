@@ -15,7 +15,7 @@ namespace model {
 class AtInitiator {
  public:
   struct Owner {
-    /// BEGIN_REQ has gone out in this cycle, of a payload that had to wait.
+    /// BEGIN_REQ of a payload that had to wait has gone out in this cycle.
     std::function<void(tlm::tlm_generic_payload&)> sent;
     /// BEGIN_RESP has come. Returns the cycle at which the response is over: this one, or a later one while
     /// the owner is busy (the target cannot begin another response before). The owner may release the
@@ -28,13 +28,13 @@ class AtInitiator {
   AtInitiator(const AtInitiator&) = delete;
   AtInitiator& operator=(const AtInitiator&) = delete;
 
-  /// Of a payload with a memory manager, which the owner keeps alive until it has been responded to. Returns
-  /// true if BEGIN_REQ has gone out; else it will when the request before has ended.
+  /// Sends a payload, which has a memory manager and which the owner keeps alive until its response. Returns
+  /// whether BEGIN_REQ has gone out; else it goes out when the request before has ended.
   bool send(tlm::tlm_generic_payload& payload);
   /// Requests that wait for the one before.
   std::size_t waiting() const { return waiting_.size(); }
 
-  /// What the module's socket passes on.
+  /// To be called by the module's socket.
   tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay);
 

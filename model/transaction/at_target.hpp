@@ -16,10 +16,10 @@ namespace model {
 class AtTarget {
  public:
   struct Owner {
-    /// A request that has begun in this cycle. Returns when it ends (END_REQ): the initiator cannot begin
-    /// another before. Nothing: when the owner calls accept().
+    /// A request has begun in this cycle. Returns when it ends (END_REQ), before which the initiator cannot
+    /// begin another; std::nullopt if the owner will call accept().
     std::function<std::optional<Cycles>(tlm::tlm_generic_payload&)> requested;
-    /// The socket's way back to the initiator.
+    /// Sends a phase back to the initiator through the socket.
     std::function<tlm::tlm_sync_enum(tlm::tlm_generic_payload&, tlm::tlm_phase&, sc_core::sc_time&)> backward;
   };
 
@@ -29,11 +29,11 @@ class AtTarget {
 
   /// Ends the request, which was not ended when it began.
   void accept(tlm::tlm_generic_payload& payload);
-  /// Begins the response, or does so when the one before is over. From the event queue, not from within a
-  /// call of the initiator.
+  /// Begins the response, or does so when the one before is over. To be called from the event queue, not from
+  /// within a call of the initiator.
   void respond(tlm::tlm_generic_payload& payload);
 
-  /// What the module's socket passes on.
+  /// To be called by the module's socket.
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay);
 
@@ -44,7 +44,7 @@ class AtTarget {
 
   EventQueue& event_queue_;
   Owner owner_;
-  std::vector<tlm::tlm_generic_payload*> responses_;  ///< that wait; the first may be on its way
+  std::vector<tlm::tlm_generic_payload*> responses_;  ///< not ended; the first may have begun
   bool responding_ = false;
 };
 

@@ -8,8 +8,8 @@
 
 namespace model {
 
-/// b_transport for the process that runs firmware, in four phases: one transaction at a time, and the process
-/// waits until it is over.
+/// A b_transport in four phases, for the process that runs firmware: one transaction at a time, and the
+/// process waits until it is over.
 class AtTransport {
  public:
   AtTransport(EventQueue& event_queue, tlm::tlm_initiator_socket<>& socket)
@@ -21,7 +21,7 @@ class AtTransport {
                       return event_queue_.now();
                     }}) {}
 
-  /// Of a payload that is used here only. Returns when it is over.
+  /// Sends `payload`, which nobody else may use meanwhile. Returns when it is over.
   Cycles transport(tlm::tlm_generic_payload& payload) {
     payload.set_mm(&keeper_);
     payload.acquire();
@@ -31,14 +31,14 @@ class AtTransport {
     return event_queue_.now();
   }
 
-  /// What the module's socket passes on.
+  /// To be called by the module's socket.
   tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay) {
     return initiator_.nb_transport_bw(payload, phase, delay);
   }
 
  private:
-  /// The payload stays where it is.
+  /// A memory manager that frees no payload: its owner keeps it.
   struct Keeper : tlm::tlm_mm_interface {
     void free(tlm::tlm_generic_payload*) override {}
   };

@@ -5,8 +5,8 @@
 namespace model {
 
 /// Division by a number that is fixed when the chip is built. Page, packet and bank counts are powers of two
-/// in every real memory, for which a shift is five times faster than the host's divider; any other number
-/// works too.
+/// in every real memory, for which a shift is five times faster than the simulator's divider; any other
+/// number works, too.
 class Divisor {
  public:
   explicit Divisor(std::uint64_t value)
@@ -26,7 +26,7 @@ class Divisor {
   int shift_;
 };
 
-/// A Divisor that is known to be a power of two, for loops in which even the question is too much.
+/// A Divisor that is known to be a power of two, for loops in which even the test for it costs too much.
 class PowerOfTwo {
  public:
   explicit PowerOfTwo(const Divisor& divisor)

@@ -7,17 +7,17 @@
 namespace model {
 namespace {
 
-/// From the start of one on.
+/// Packets of `bytes` bytes that begin at the start of a packet.
 std::uint64_t packets_of(std::uint64_t bytes, const Divisor& packet) {
   return packet.quotient(bytes + packet.value() - 1);
 }
 
-/// The bytes of as many packets as a piece needs wherever it lies.
+/// Bytes of the packets that a piece needs wherever it lies.
 std::uint64_t whole_packets(std::uint64_t bytes, const Divisor& packet) {
   return packets_of(bytes, packet) * packet.value();
 }
 
-/// Beyond all memory when there is no such address.
+/// The address after the last byte; beyond all memory when there is no such address.
 cn::MonoAddress end_of(cn::MonoAddress address, std::uint64_t bytes) {
   return address + bytes < address ? ~cn::MonoAddress{0} : address + bytes;
 }
@@ -137,8 +137,8 @@ bool MonoPieces::describe_packed_array(int num_pes, const Rules& rules) {
   return true;
 }
 
-/// Step by step over all pieces: a short loop for each question is several times faster than one that asks
-/// them all.
+/// Several passes over all pieces: a short loop for each question is several times faster than one loop for
+/// all of them.
 void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   if (by_pe_.empty()) {
     collect(num_pes,
@@ -170,11 +170,11 @@ void MonoPieces::describe_each(int num_pes, const Rules& rules) {
   runs_.count_ = std::size_t(run - runs_.storage_.data());
 }
 
-/// The addresses of all PEs that take part, in their order. Where not all of a strip do, without a branch on
-/// who does: nobody could predict it.
+/// Collects the addresses of all PEs that take part, in their order. A strip of which only some take part is
+/// done without a branch for each PE, which could not be predicted.
 template <class AddressOf>
 void MonoPieces::collect(int num_pes, const AddressOf& address_of) {
-  addresses_.resize(std::size_t(num_pes) + 1);  // what comes behind the last is written, too
+  addresses_.resize(std::size_t(num_pes) + 1);  // one more, because the place after the last is written, too
   cn::MonoAddress* const addresses = addresses_.data();
   std::size_t pes = 0;
   for (int first_pe = 0; first_pe < num_pes; first_pe += cn::kStripLanes) {

@@ -9,17 +9,17 @@
 namespace model {
 
 /// What one PIO request asks of mono memory: a piece of the same size for each PE that takes part, in
-/// ascending PE order, and the runs they form. A run is as many neighbouring pieces as lie one behind the
-/// other; a request of an array without gaps is one run. Addresses are copied, and the memory for them is
-/// kept from one request to the next.
+/// ascending PE order, and the runs they form. A run is a maximal contiguous sequence of pieces; a request of
+/// an array without gaps is one run. Addresses are copied, and the memory for them is kept from one request
+/// to the next.
 class MonoPieces {
  public:
   struct Run {
     cn::MonoAddress address;
     std::uint64_t bytes;
   };
-  /// In the order of their PEs. Room for the most there can be is made once, since a request has up to one
-  /// run a PE and a test for room at each costs more than the run.
+  /// A list of runs, by PE. It makes room for the most there can be once: a request has up to one run per PE,
+  /// and a test for room at each costs more than the run.
   class Runs {
    public:
     std::size_t size() const { return count_; }
@@ -47,7 +47,7 @@ class MonoPieces {
 
   cn::Direction direction() const { return direction_; }
   bool write() const { return direction_ == cn::Direction::poly_to_mono; }
-  /// Of all PEs, whether they take part or not.
+  /// The places of all PEs, whether they take part or not.
   cn::MonoPlaces places() const {
     return by_pe_.empty() ? cn::MonoPlaces::array(first_, stride_bytes_)
                           : cn::MonoPlaces::each(by_pe_.data(), first_);
@@ -55,8 +55,8 @@ class MonoPieces {
   const cn::LaneMask& enabled() const { return enabled_; }
   int bytes_per_pe() const { return bytes_per_pe_; }
 
-  int pes() const { return pes_; }        ///< that take part
-  int pieces() const { return pieces_; }  ///< that are addressed: `pes` less the consolidated ones
+  int pes() const { return pes_; }        ///< PEs that take part
+  int pieces() const { return pieces_; }  ///< addressed pieces: `pes` less the consolidated ones
   /// Pieces off an 8-byte boundary, or across more packet boundaries than their size makes necessary
   /// (csx600.md, section 2, counts none for an array of 80-byte pieces in 64-byte packets).
   int misaligned() const { return misaligned_; }
@@ -71,7 +71,7 @@ class MonoPieces {
   class SeenAddresses {
    public:
     void clear();
-    /// True the first time.
+    /// Whether `address` comes for the first time.
     bool insert(cn::MonoAddress address);
 
    private:
@@ -87,12 +87,12 @@ class MonoPieces {
   /// One bit a piece of a packed array: whether it is misaligned. Offsets within packets and words repeat
   /// after a period, so for one that divides 64 the same word holds for every 64 pieces.
   struct MisalignedPattern {
-    std::uint64_t offset = ~std::uint64_t{0};  ///< of the array's first byte in its packet
-    std::uint64_t bytes = 0;                   ///< a piece
+    std::uint64_t offset = ~std::uint64_t{0};  ///< where in its packet the array's first byte lies
+    std::uint64_t bytes = 0;                   ///< bytes of a piece
     bool repeats = false;
     std::uint64_t word = 0;
   };
-  /// A firmware has a few arrays, over and over.
+  /// Firmware requests a few arrays over and over.
   static constexpr std::size_t kKnownPatterns = 64;
 
   bool describe_packed_array(int num_pes, const Rules& rules);
@@ -116,7 +116,7 @@ class MonoPieces {
   cn::MonoAddress end_ = 0;
   Runs runs_;
   std::vector<MisalignedPattern> patterns_;
-  std::vector<cn::MonoAddress> addresses_;  ///< of pieces, while they are described
+  std::vector<cn::MonoAddress> addresses_;  ///< addresses of the pieces, while they are described
   SeenAddresses seen_;
 };
 

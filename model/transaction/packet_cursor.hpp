@@ -13,7 +13,7 @@ class PacketCursor {
   struct Packet {
     cn::MonoAddress address;
     std::uint64_t bytes;
-    int first_piece;  ///< of the pieces that it holds, in the order of the request
+    int first_piece;  ///< first of the pieces that it holds, in the order of the request
     int last_piece;
   };
 
@@ -26,7 +26,7 @@ class PacketCursor {
   }
 
   bool at_end() const { return run_ == pieces_->runs().size(); }
-  /// Not at the end.
+  /// Must not be called at the end.
   const Packet& packet() const { return packet_; }
   void advance() {
     offset_ += packet_.bytes;
@@ -53,7 +53,7 @@ class PacketCursor {
   std::uint64_t packet_bytes_ = 0;
   std::uint64_t bytes_per_piece_ = 0;
   std::size_t run_ = 0;
-  std::uint64_t offset_ = 0;  ///< in the run
+  std::uint64_t offset_ = 0;  ///< of the packet within the run
   int first_piece_of_run_ = 0;
   Packet packet_{};
 };

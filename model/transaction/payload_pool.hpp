@@ -9,8 +9,8 @@
 
 namespace model {
 
-/// Generic payloads with room for their data, kept from one transaction to the next: once as many exist as
-/// are on the way at a time, nothing is allocated. Sticky extensions stay with a payload.
+/// Generic payloads with room for their data, kept from one transaction to the next: once there are as many
+/// as are on the way at a time, no further memory is allocated. Sticky extensions stay with a payload.
 class PayloadPool : public tlm::tlm_mm_interface {
  public:
   PayloadPool() = default;

@@ -37,7 +37,7 @@ char* put_bits(char* out, std::uint64_t value) {
 VcdWriter::VcdWriter(TextSink sink, const std::vector<Signal>& signals)
     : sink_(std::move(sink)), buffer_(kBufferBytes) {
   for (const Signal& signal : signals) {
-    Code code;  // short names of printable characters
+    Code code;  // a short name of printable characters
     code.width = signal.width;
     std::size_t number = codes_.size();
     do {
@@ -51,7 +51,7 @@ VcdWriter::VcdWriter(TextSink sink, const std::vector<Signal>& signals)
 
 void VcdWriter::define(const std::vector<Signal>& signals) {
   std::string text = "$version csx600 $end\n$timescale 1 ps $end\n";
-  std::vector<std::string> open;  // scopes
+  std::vector<std::string> open;  // scopes that are not closed yet
   const auto leave_to = [&](std::size_t depth) {
     for (; open.size() > depth; open.pop_back()) text += "$upscope $end\n";
   };

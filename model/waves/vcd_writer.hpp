@@ -9,14 +9,14 @@
 
 namespace model {
 
-/// Takes a text piece by piece. Never throws: one that cannot go on keeps its error for its owner.
+/// Takes a text piece by piece. Must not throw: a sink that cannot go on keeps its error for its owner.
 using TextSink = std::function<void(std::string_view)>;
 
 /// A value change dump (IEEE 1364, section 18) as a stream, time unit 1 ps. SystemC's own writer compares
 /// every signal at every time step and cannot pause, tell a full disk or write a time before initial values;
 /// here only changes cost time (a run of 0.10 s took 0.42 s with it).
 ///
-/// The same calls give the same bytes: no date.
+/// The same calls give the same bytes: the file has no date.
 class VcdWriter {
  public:
   struct Signal {
@@ -31,7 +31,7 @@ class VcdWriter {
   void record(std::uint64_t picoseconds, const std::vector<std::uint64_t>& values);
   void time(std::uint64_t picoseconds);
   void change(std::size_t signal, std::uint64_t value);
-  /// Nothing is known from here on.
+  /// All values are unknown from here on.
   void pause(std::uint64_t picoseconds);
   /// Hands over what is still in the buffer.
   void flush();
@@ -45,7 +45,7 @@ class VcdWriter {
 
   void define(const std::vector<Signal>& signals);
   void put(std::string_view text);
-  /// Where the next line goes, with room for it; end_line() takes what was written there.
+  /// Returns where the next line is to be written; end_line() takes it into the buffer.
   char* begin_line();
   void end_line(const char* end) { size_ = std::size_t(end - buffer_.data()); }
 

@@ -16,8 +16,8 @@ struct CycleWindow {
   Cycles last = std::numeric_limits<Cycles>::max();
 };
 
-/// The blocks whose kernels are the first-th, counted from 1, and the `count` - 1 after it; up to where the
-/// kernels of the next one begin.
+/// Blocks `first` (counted from 1) to `first` + `count` - 1: from where the kernels of the first begin to
+/// where those of the next block begin.
 struct BlockWindow {
   std::uint64_t first = 1;
   std::uint64_t count = std::numeric_limits<std::uint64_t>::max();

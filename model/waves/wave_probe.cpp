@@ -15,7 +15,7 @@ bool is_load(const PioEvent& event) {
   return event.direction == cn::Direction::mono_to_poly;
 }
 
-/// For Rule::set_or_clear: bit 0 of a PE's part is loading, bit 1 saving.
+/// A change for Rule::set_or_clear: bit 0 of a PE's part is loading, bit 1 saving.
 std::uint64_t part(const PioEvent& event, bool begins) {
   return (is_load(event) ? 0u : 2u) + (begins ? 1u : 0u);
 }
@@ -63,11 +63,11 @@ void WaveProbe::spent(CycleCause cause, Cycles start, Cycles finish, int semapho
   wake_for(finish);
 }
 
-/// Nothing follows the last span yet, or ever.
+/// Shows the control unit idle: no span follows the latest one yet, or ever.
 void WaveProbe::end_control() {
   change(control_stream, control_finish_, WaveSignal::control_state, 0);
   change(control_stream, control_finish_, WaveSignal::control_semaphore, kNoSemaphore);
-  control_finish_ = std::numeric_limits<Cycles>::max();  // until there is another
+  control_finish_ = std::numeric_limits<Cycles>::max();  // until another span is reported
 }
 
 void WaveProbe::kernel_details(const KernelDetails& details) {
@@ -97,7 +97,7 @@ void WaveProbe::ran_kernel(const char* name, Cycles start, Cycles finish, int en
   change(control_stream, finish, WaveSignal::pe_array_enabled_pes, 0);
   change(control_stream, finish, WaveSignal::pe_array_instruction_class, 0);
   change_lanes(control_stream, finish, WaveSignal::pe_enabled, nullptr, 0);
-  details_.issued = nullptr;  // points at what was valid then
+  details_.issued = nullptr;  // only valid during that call
   details_.lanes = nullptr;
 }
 
@@ -221,7 +221,8 @@ void WaveProbe::change(std::size_t stream, Cycles cycle, WaveSignal signal, std:
   recorder_.change(stream, cycle, place, value);
 }
 
-/// The only process. What is reported from now on is not earlier than now, less what units report late.
+/// The only process. Units report nothing earlier than now - kLatestReport any more, so what lies before is
+/// written.
 void WaveProbe::advance() {
   wake_pending_ = false;
   const Cycles now = clock_.cycle_at(sc_core::sc_time_stamp());
@@ -232,8 +233,8 @@ void WaveProbe::advance() {
   if (latest_reported_ > now) wake_for(latest_reported_);
 }
 
-/// At a cycle that was reported: a timer of its own would keep a simulation running that is otherwise at its
-/// end.
+/// Wakes up at a cycle that was reported: a timer of its own would keep a simulation running that is
+/// otherwise at its end.
 void WaveProbe::wake_for(Cycles reported) {
   latest_reported_ = std::max(latest_reported_, reported);
   if (wake_pending_ || !recorder_.wants_more()) return;

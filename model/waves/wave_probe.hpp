@@ -20,18 +20,18 @@
 
 namespace model {
 
-/// Running counts of the memory side, as booked by now.
+/// Running counts of memory and network, as booked by now.
 struct MemoryCounters {
   std::uint64_t page_hits = 0;
   std::uint64_t page_misses = 0;
   std::uint64_t bytes_read = 0;
   std::uint64_t bytes_written = 0;
-  std::uint64_t pio_bytes = 0;  ///< across the network
+  std::uint64_t pio_bytes = 0;  ///< bytes of programmed I/O across the network
 };
 
 /// Turns what the observed units report, ahead of SystemC time and not in one order, into the signals of
-/// wave_signals.hpp. Wakes up only at cycles that were reported, to write what can no longer change; calls
-/// nothing of what it observes, so no cycle depends on it.
+/// wave_signals.hpp. Wakes up only at cycles that were reported, to write what can no longer change. It calls
+/// no observed unit, so no cycle depends on it.
 class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObserver, public PortObserver {
  public:
   using MemorySampler = std::function<MemoryCounters()>;
@@ -74,14 +74,14 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
   /// Changes that were reported too late and are shown late. 0 as long as the observed units run ahead of
   /// SystemC time.
   std::uint64_t late_changes() const { return recorder_.late_changes(); }
-  /// What the file covers.
+  /// First and last time in the file.
   sc_core::sc_time window_start() const { return clock_.time_at(recorder_.first_recorded()); }
   sc_core::sc_time window_end() const { return clock_.time_at(recorder_.last_recorded()); }
   /// BlockWindows::block_starts().
   const std::vector<Cycles>& block_starts() const { return blocks_.block_starts(); }
 
  private:
-  /// Each is in the order of time; banks follow.
+  /// Changes of one stream come in the order of time. Streams of the banks follow.
   enum Stream : std::uint8_t {
     control_stream,
     load_stream,
@@ -122,8 +122,8 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
   NameNumbers kernels_;
   NameNumbers bins_;
 
-  std::optional<std::pair<Cycles, CycleCause>> span_;  ///< that began last
-  Cycles control_finish_ = 0;                          ///< of the last span
+  std::optional<std::pair<Cycles, CycleCause>> span_;  ///< start and cause of the latest span
+  Cycles control_finish_ = 0;                          ///< end of the latest span
   std::optional<Cycles> kernel_start_;
 
   sc_core::sc_event wake_;

@@ -5,7 +5,7 @@
 namespace model {
 namespace {
 
-/// Of a stream, written already: storage is given back in pieces of this many.
+/// Changes that are written already leave a stream in batches of this many.
 constexpr std::size_t kKeptChanges = 512;
 
 std::vector<VcdWriter::Signal> vcd_signals(const std::vector<WaveRecorder::Signal>& signals) {

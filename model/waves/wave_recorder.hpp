@@ -11,10 +11,11 @@
 namespace model {
 
 /// Brings changes that come in several streams, each in the order of time, into one order, and writes those
-/// within the windows as a VCD. Windows may be added while it runs; what they cover together is written once.
+/// within the windows as a VCD. Windows may be added while it runs; cycles that several cover are written
+/// once.
 class WaveRecorder {
  public:
-  /// How a change meets the value before.
+  /// How a change combines with the value before.
   enum class Rule : std::uint8_t {
     assign,
     maximum,       ///< a count that two units report out of order
@@ -46,7 +47,7 @@ class WaveRecorder {
   /// Whether `cycle`, not written yet, lies in a window that is known by now.
   bool covers(Cycles cycle) const;
   bool recorded() const { return recorded_; }
-  /// Of all windows together.
+  /// First and last cycle of all windows together.
   Cycles first_recorded() const { return first_recorded_; }
   Cycles last_recorded() const { return last_recorded_; }
   /// Changes that were reported too late.

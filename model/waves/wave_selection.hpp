@@ -9,7 +9,7 @@
 
 namespace model {
 
-/// Waves that cannot be had, in one line: what was found, what is allowed.
+/// Waves that cannot be recorded. The message is one line: what was found, what is allowed.
 class WaveError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,7 +19,7 @@ class WaveError : public std::runtime_error {
 struct WaveSelection {
   std::vector<std::string> globs;       ///< shell patterns on paths; none: every path
   std::optional<WaveLevel> level;       ///< default: all levels with globs, units without
-  std::optional<std::vector<int>> pes;  ///< of single PEs show these, whatever the level
+  std::optional<std::vector<int>> pes;  ///< the PEs shown one by one, whatever the level
 };
 
 /// The signals chosen, in the order of the table. Throws WaveError for a pattern that no signal of the chip

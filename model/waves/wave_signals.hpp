@@ -49,9 +49,9 @@ enum class WaveSignal : std::uint8_t {
 };
 inline constexpr int kWaveSignals = static_cast<int>(WaveSignal::host_link_state) + 1;
 
-inline constexpr std::uint64_t kNoSemaphore = 0xff;        ///< of control.semaphore
-inline constexpr std::uint64_t kNoRequest = 0xffff'ffffu;  ///< of pio.load_request and pio.save_request
-inline constexpr std::uint64_t kNoBlock = 0xffff;          ///< of bins.*_block
+inline constexpr std::uint64_t kNoSemaphore = 0xff;        ///< value of control.semaphore
+inline constexpr std::uint64_t kNoRequest = 0xffff'ffffu;  ///< value of pio.load_request and pio.save_request
+inline constexpr std::uint64_t kNoBlock = 0xffff;          ///< value of bins.*_block
 
 /// How much is shown: each level includes the ones before.
 enum class WaveLevel : std::uint8_t {
@@ -62,7 +62,7 @@ enum class WaveLevel : std::uint8_t {
 inline constexpr int kWaveLevels = static_cast<int>(WaveLevel::detail) + 1;
 const char* wave_level_name(WaveLevel level);
 
-/// What there is one signal of.
+/// What has one such signal each.
 enum class WaveCount : std::uint8_t { chip, thread, bank, pe };
 
 struct ValueName {
@@ -92,9 +92,9 @@ struct WaveSignalInfo {
   WaveTopic topic;
   std::string_view meaning;
   WaveNames names = WaveNames::none;
-  std::vector<ValueName> fixed_names{};  ///< of values that mean the same in every run
+  std::vector<ValueName> fixed_names{};  ///< values that mean the same in every run
 
-  /// With an asterisk in place of the number if there are several.
+  /// Scope and name; an asterisk stands for the number if there are several.
   std::string path() const;
 };
 
@@ -104,7 +104,7 @@ const std::vector<WaveSignalInfo>& wave_signal_table();
 /// One signal of one chip.
 struct WaveInstance {
   const WaveSignalInfo* info;
-  int index;         ///< thread, bank or PE; 0 of the chip's own
+  int index;         ///< thread, bank or PE; 0 for the chip's own
   std::string path;  ///< "pe_array.pe_07.enabled": numbers as wide as the last, so that names sort naturally
 };
 

@@ -75,8 +75,7 @@ unsigned flags_of(WaveForm form) {
   return kRightJustified | kDecimal;
 }
 
-/// What the viewer shows in place of the name, whose scopes it leaves out: the group says the first, a number
-/// says which thread, bank or PE.
+/// The name that the viewer shows. It leaves out the first scope, which the group's title says.
 std::string short_name(const WaveInstance& signal) {
   std::string name = signal.path.substr(signal.path.find('.') + 1);
   std::replace(name.begin(), name.end(), '.', ' ');

@@ -58,7 +58,7 @@ struct StreamArguments {
   cn::PolyArray<double> fed;
 };
 
-/// Of the last eight PEs, which feed.
+/// The last eight PEs feed the others.
 void take_one_step(const StreamArguments& arguments) {
   const cn::VectorStream<double> stream(arguments.own, 0, arguments.fed, 0, 8);
   stream.after(0);
@@ -94,7 +94,7 @@ class HazardChecker : public testing::Test {
   }
   void read(int offset_bytes) { run(kReads, offset_bytes); }
   void write(int offset_bytes) { run(kWrites, offset_bytes); }
-  /// Empty when `touch` is allowed.
+  /// The hazard's message; empty when `touch` is allowed.
   template <class Touch>
   std::string hazard(Touch&& touch) {
     return fault_of(touch);

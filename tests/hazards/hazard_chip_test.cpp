@@ -122,7 +122,7 @@ TEST_P(HazardOnChip, RequestsHaveTheEnginesNumbers) {
   run([](Machine& machine) {
     const cn::Semaphore done = machine.allocate_semaphore("done");
     for (int i = 0; i < 3; ++i) {
-      load(machine, done, LaneMask{});  // of no PE: has no number
+      load(machine, done, LaneMask{});  // without a PE, so it has no number
       load(machine, done);
       machine.sem_wait(done), machine.sem_wait(done);
       const cn::Untimed untimed(machine);
@@ -137,7 +137,7 @@ TEST_P(HazardOnChip, RequestsHaveTheEnginesNumbers) {
   expect_parts(fault(), {"request 3 (load", "started at cycle " + std::to_string(ids.enqueued.at(3)) + ","});
 }
 
-/// How the control unit came to this cycle and who carries the data makes no difference.
+/// It makes no difference how the control unit came to this cycle and who carries the data.
 INSTANTIATE_TEST_SUITE_P(Timing, HazardOnChip,
                          testing::Values(TimingStyle::loosely_timed, TimingStyle::approximately_timed),
                          [](const auto& style) {

@@ -23,7 +23,7 @@ struct Run {
   std::vector<int> waits;
 };
 
-/// All of mono memory is zero: who touches what does not depend on the numbers.
+/// All of mono memory is zero: accesses do not depend on the numbers.
 Run run_checked(const Firmware& firmware, int num_pes, int dropped_wait = -1) {
   BrokenMachine machine(num_pes, 6144, 16u << 20, dropped_wait);
   model::HazardChecker checker(machine);

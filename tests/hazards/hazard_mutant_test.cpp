@@ -28,7 +28,7 @@ bool has_all(const std::string& message, const std::vector<std::string>& parts) 
   return true;
 }
 
-/// Empty when it came to its end, or was refused before it began.
+/// The hazard's message; empty when the run came to its end, or was refused before it began.
 std::string fault_of(const testbench::Scene& scene, const ProgramConfig& config) {
   try {
     return test_support::run_checked(scene, config, 8, 1).fault;
@@ -43,8 +43,8 @@ std::vector<Traversal> traversals() {
   return {Traversal::brute_force};
 }
 
-/// Whether a configuration can do without the missing line differs: nothing is ahead at n = 0, with many
-/// blocks no two steps on one meet. Where one cannot, the message must say what is expected.
+/// Some configurations can do without the missing line: at n = 0 no block is loaded ahead, and with many
+/// blocks no two steps meet on one. Where a configuration cannot, the message must be the expected one.
 TEST(Mutant, IsStopped) {
   const std::vector<std::string> parts = expected_parts();
   std::set<std::string> stopped;

@@ -207,7 +207,7 @@ TEST_F(AtPio, NoTransactionAllocatesOnceAllPayloadsExist) {
     const std::size_t before = allocations;
     const std::size_t transactions = at_engine.transactions() + at_memory.transactions();
     requests(200);
-    // The checkers themselves allocate one node of a map for each transaction they see; of the model nothing
+    // The checkers themselves allocate one node of a map for each transaction they see; nothing of the model
     // may grow with the number of transactions.
     const std::size_t seen = at_engine.transactions() + at_memory.transactions() - transactions;
     EXPECT_LT(allocations - before, seen + 10);

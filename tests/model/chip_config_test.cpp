@@ -56,7 +56,7 @@ TEST(ParameterTable, EveryParameterIsDescribed) {
     EXPECT_EQ(parameter.meaning.find('\n'), std::string::npos);
     const auto name = confidence_name(parameter.confidence);
     EXPECT_NE(std::find(kConfidenceNames.begin(), kConfidenceNames.end(), name), kConfidenceNames.end());
-    // What is not assumed names its source, or (16-bit passes) the arithmetic it follows from.
+    // A value that is not assumed names its source, or (16-bit passes) the arithmetic it follows from.
     if (parameter.confidence != Confidence::assumed && parameter.key.find("_alu") == std::string::npos) {
       EXPECT_NE(parameter.meaning.find('['), std::string::npos) << parameter.meaning;
     }

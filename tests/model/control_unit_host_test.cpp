@@ -1,4 +1,4 @@
-// The control unit and what lies outside the chip: semaphores shared with the host, observers, memory of
+// The control unit and what lies outside the chip: semaphores shared with the host, observers, a memory of
 // another make.
 
 #include <cstring>
@@ -161,7 +161,7 @@ TEST_F(ControlUnitHost, ObserverIsToldEverySpan) {
     machine.issue_mono(10);
     machine.run(kFake, issues(InstructionClass::fp64_add, 30), LaneMask::first(5));
     machine.sem_wait(done);
-    machine.issue_mono(0);  // nothing
+    machine.issue_mono(0);  // takes no cycle
   });
   EXPECT_EQ(recorder.spans, (std::vector<std::tuple<CycleCause, Cycles, Cycles, int>>{
                                 {CycleCause::mono, 0, 10, -1},

@@ -22,7 +22,7 @@ using test_support::test_chip;
 
 class ControlUnit : public test_support::ControlBench {};
 
-/// Prices that no two classes share.
+/// A cost table in which no two classes cost the same.
 model::ChipConfig priced_chip() {
   model::ChipConfig config = test_chip();
   for (std::size_t i = 0; i < cn::kInstructionClasses; ++i) config.poly.cycles[i] = 100.0 + double(i);
@@ -62,7 +62,7 @@ TEST_F(ControlUnit, KernelCostDoesNotDependOnThePesEnabled) {
   build(priced_chip());
   run_well([](Machine& machine) {
     machine.run(kFake, issues(InstructionClass::fp64_add, 10), LaneMask::first(1));
-    machine.run(kFake, issues(InstructionClass::fp64_add, 10), LaneMask());  // runs nothing
+    machine.run(kFake, issues(InstructionClass::fp64_add, 10), LaneMask());  // has no PE to run on
   });
   EXPECT_EQ(spent(CycleCause::poly), 40u);
 }
@@ -295,7 +295,7 @@ TEST_F(ControlUnit, ProgrammedIoSlowsKernelsDownAtTheSramPorts) {
                 LaneMask::first(8));  // half of the words pass by then
     EXPECT_EQ(spent(CycleCause::stolen), 8u + 16u);
     machine.sem_wait(done);
-    machine.run(kFake, issues(InstructionClass::sram, 400), LaneMask::first(8));  // nothing passes
+    machine.run(kFake, issues(InstructionClass::sram, 400), LaneMask::first(8));  // no word passes
   });
   EXPECT_EQ(spent(CycleCause::stolen), 24u);
   EXPECT_EQ(spent(CycleCause::poly), 400u + 156u + 400u);

@@ -335,7 +335,7 @@ TEST_F(ControlUnitThreads, AllWaitForTheHostOrTransfersUntilTheFirstIsSignalled)
   });
 }
 
-/// Spans without gaps, whoever looks.
+/// Spans have no gaps, however often the observer synchronises.
 class Spans : public model::ControlObserver {
  public:
   void spent(CycleCause cause, Cycles start, Cycles finish, int) override {

@@ -1,4 +1,4 @@
-// A chip on which nobody can go on says who waits for whom.
+// A chip that is deadlocked says who waits for whom.
 
 #include <string>
 

@@ -68,7 +68,7 @@ class HostContention : public test_support::SystemCFixture, public testing::With
     return {chip.control_unit.now() - kStart, chip.clear_connect.statistics(Initiator::pio),
             chip.clear_connect.statistics(Initiator::host), downloader.end};
   }
-  /// The memory is what loads wait for, and the host link is as fast as half of it.
+  /// Loads wait for the memory, and the host link is half as fast as it.
   static model::ChipConfig memory_bound_chip() {
     model::ChipConfig config = test_chip();
     config.pio.setup_cycles = 0;
@@ -104,7 +104,7 @@ TEST_P(HostContention, LongTransferDoesNotPushAsideWhatComesBeforeItsEnd) {
   const model::ChipConfig config = memory_bound_chip();
   const Measured shorter = measure(config, 100000, GetParam());
   const Measured longer = measure(config, 600000, GetParam());
-  EXPECT_EQ(shorter.loads, longer.loads);  // over long before either transfer
+  EXPECT_EQ(shorter.loads, longer.loads);  // over long before either transfer ends
 }
 
 TEST_P(HostContention, TransferThatIsOverHoldsUpNobody) {

@@ -1,4 +1,4 @@
-// What the chip counts kernel by kernel: whose data was waited for, what enabled PEs executed.
+// What the chip counts kernel by kernel: waits for its data, and instructions that enabled PEs executed.
 
 #include "tests/support/control_bench.hpp"
 
@@ -37,7 +37,7 @@ TEST_F(KernelCounters, WaitsBelongToTheKernelThatFollows) {
     machine.sem_wait(loaded);
     machine.run(kFake, work(), LaneMask::first(8));
     save(machine, saved);
-    machine.run(kOther, work(), LaneMask::first(8));  // waits for nothing
+    machine.run(kOther, work(), LaneMask::first(8));  // without a wait
     machine.sem_wait(saved);
     machine.run(kFake, work(), LaneMask::first(8));
     load(machine, loaded);

@@ -7,7 +7,7 @@
 namespace {
 
 TEST(LazyMemory, TakesOnlyPagesThatAreTouched) {
-  model::LazyMemory memory(std::uint64_t{1} << 34);  // 16 GiB, more than the host need have
+  model::LazyMemory memory(std::uint64_t{1} << 34);  // 16 GiB, more than the simulator need have
   EXPECT_EQ(memory.size_bytes(), std::uint64_t{1} << 34);
   memory.data()[0] = 1;
   memory.data()[(std::uint64_t{1} << 34) - 1] = 2;

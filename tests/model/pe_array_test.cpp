@@ -27,7 +27,7 @@ class Loop {
     reach(tree_.node(root(), 0, 0), 8).counts[InstructionClass::fp64_add] = 5;  // 20 cycles
     IssueTree::Node& second = reach(tree_.node(root(), 0, 1), 5);
     second.counts[InstructionClass::sram] = 5;  // 10 cycles
-    // Nobody came here: what it holds does not count.
+    // No PE reached this node: its instructions do not count.
     tree_.node(second, 0, 0).counts[InstructionClass::fp64_add] = 1000;
     reach(tree_.node(second, 1, 0), 2).counts[InstructionClass::sram] = 15;  // 30 cycles
   }
@@ -140,7 +140,7 @@ TEST_F(PeArray, EfficiencyOfNothingIsOne) {
   EXPECT_DOUBLE_EQ(model::KernelStatistics{}.simd_efficiency(8), 1.0);
 }
 
-/// What was issued at a place of the run before is only a guess of what is issued there now.
+/// The block that the last run issued at a place is only a guess of the one that is issued there now.
 TEST_F(PeArray, RunsOfAKernelMayDiffer) {
   const model::ChipConfig config = priced_chip();
   model::PeArray array("pe_array", config);

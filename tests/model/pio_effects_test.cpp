@@ -17,7 +17,7 @@ using test_support::kAll;
 using test_support::kPes;
 using test_support::test_chip;
 
-/// A chip whose memory is the bottleneck, so that nothing of it hides behind the PEs.
+/// A chip whose memory is the bottleneck, so that none of its time hides behind the PEs.
 ChipConfig memory_bound_chip() {
   ChipConfig config = test_chip();
   config.pio.setup_cycles = 0;
@@ -148,7 +148,7 @@ TEST_P(PioEffects, ConsolidationFetchesEqualAddressesOnce) {
   EXPECT_EQ(ddr_statistics.bytes_read, 32u);
   // 100 + 8 x 14; approximately timed the last PE's own packet leaves at 180 and pays 40 of latency, a hit.
   EXPECT_EQ(each, GetParam() == TimingStyle::loosely_timed ? 212u : 220u);
-  EXPECT_EQ(once, 160u);  // as of one PE, with the whole latency
+  EXPECT_EQ(once, 160u);  // as for one PE, with the whole latency
 }
 
 TEST_P(PioEffects, ConsolidationLeavesDifferentAddressesAlone) {

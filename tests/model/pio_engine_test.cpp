@@ -156,7 +156,7 @@ TEST_F(PioEngine, EqualAddressesAreFetchedOnceWhenAsked) {
   build(config);
   fill_memories(4096);
   engine->enqueue(read(MonoPlaces::array(64, 0), 32, kAll), 1000);
-  EXPECT_EQ(signal(), 1160u);  // as of one PE
+  EXPECT_EQ(signal(), 1160u);  // as for one PE
   for (int pe = 0; pe < kPes; ++pe) EXPECT_EQ(poly_word(pe, 8), 0xd000000u + 72);
   EXPECT_EQ(ddr->statistics().bytes_read, 32u);
   EXPECT_EQ(engine->statistics().bytes_to_poly, 256u);

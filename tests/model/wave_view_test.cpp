@@ -69,7 +69,7 @@ TEST(WaveSignals, TableOfTheReadmeIsTheGeneratedOne) {
   std::ifstream in(file);
   ASSERT_TRUE(in) << file;
   std::string table;
-  bool in_section = false;  // of signals: there are other tables
+  bool in_section = false;  // of the signals; there are other tables
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("## ", 0) == 0) in_section = line == "## Signals";
     if (in_section && !line.empty() && line[0] == '|') table += line + "\n";

@@ -45,7 +45,7 @@ class BrokenMachine : public testbench::NativeMachine {
     std::vector<int> perhaps_needed;
   };
 
-  /// Whether it counts.
+  /// Whether the wait counts among the timed waits for transfers.
   bool note_wait(Waits& waits) {
     if (waits.moves_data.empty()) return false;  // the machine stops it
     const bool moved_data = waits.moves_data.front();

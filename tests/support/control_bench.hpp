@@ -44,7 +44,7 @@ class ControlBench : public SystemCFixture {
     chip = std::make_unique<model::Csx600>("chip", config, timing);
   }
 
-  /// Until nothing happens any more; what the firmware threw stays in the control unit.
+  /// Runs until no events are left. What the firmware threw stays in the control unit.
   void run(Firmware firmware) {
     if (!chip) build(test_chip());
     chip->control_unit.load(std::move(firmware));

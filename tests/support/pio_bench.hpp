@@ -26,7 +26,7 @@ inline model::ChipConfig chip_with(model::PioArbitration arbitration) {
   return config;
 }
 
-/// A process for what a test does; an approximately timed unit lets time pass in its calls.
+/// The process of a test's body, because an approximately timed unit lets time pass in its calls.
 class Driver : public sc_core::sc_module {
  public:
   explicit Driver(const sc_core::sc_module_name& name) : sc_module(name) {
@@ -48,7 +48,7 @@ class PioBench : public SystemCFixture {
     build_unelaborated(chip);
     elaborate();
   }
-  /// For tests whose body is run(): on one chip or the other the same calls.
+  /// For tests whose body is run(), which makes the same calls in either style.
   void build(const model::ChipConfig& chip, model::TimingStyle style) {
     if (style == model::TimingStyle::approximately_timed)
       event_queue = std::make_unique<model::EventQueue>("event_queue", clock);
@@ -60,7 +60,7 @@ class PioBench : public SystemCFixture {
     network->ddr_socket.bind(at_memory.in);
     at_memory.out.bind(ddr->socket);
   }
-  /// Runs `body` in a process until nothing happens any more.
+  /// Runs `body` in a process until no events are left.
   void run(std::function<void()> body) {
     driver.body = std::move(body);
     sc_core::sc_start();
@@ -84,7 +84,7 @@ class PioBench : public SystemCFixture {
     return *reinterpret_cast<std::uint64_t*>(mono() + address);
   }
 
-  /// Every word of mono memory and of the SRAMs holds something of its own.
+  /// Gives every word of mono memory and of the SRAMs a value of its own.
   void fill_memories(std::uint64_t mono_bytes) {
     for (std::uint64_t address = 0; address < mono_bytes; address += 8)
       mono_word(address) = 0xd000000 + address;

@@ -21,7 +21,7 @@ void fail_test(const sc_core::sc_report& report, const sc_core::sc_actions& acti
 int sc_main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   sc_core::sc_report_handler::set_handler(fail_test);
-  // Units without processes are elaborated by a start in which nothing happens.
+  // Units without processes are elaborated by a start without events.
   sc_core::sc_report_handler::set_actions(sc_core::SC_ID_NO_SC_START_ACTIVITY_, sc_core::SC_DO_NOTHING);
   return RUN_ALL_TESTS();
 }

@@ -93,7 +93,7 @@ class MinimalMemory : public sc_core::sc_module {
   sc_core::sc_time latency_;
 };
 
-/// Remembers who was signalled when.
+/// Records which semaphores were signalled when.
 class SignalRecorder : public sc_core::sc_module, public model::SemaphorePort {
  public:
   explicit SignalRecorder(const sc_core::sc_module_name& name) : sc_module(name) {}

@@ -22,7 +22,7 @@ class VcdReader {
     std::vector<Change> changes;  ///< the first is the initial value
   };
 
-  /// Of a signal while nothing is recorded.
+  /// The value of a signal while recording pauses.
   static constexpr std::uint64_t kUnknown = ~std::uint64_t{0};
 
   explicit VcdReader(std::istream& in) {

@@ -36,7 +36,7 @@ class Reporter : public sc_core::sc_module {
 
 class WaveProbeFixture : public test_support::SystemCFixture {
  protected:
-  /// Of one nanosecond a cycle, everything shown.
+  /// A probe that shows everything; a cycle takes one nanosecond by default.
   void make_probe(model::Cycles first = 0, model::Cycles last = model::CycleWindow{}.last,
                   double clock_hz = 1e9) {
     model::WaveConfig config;
@@ -50,7 +50,7 @@ class WaveProbeFixture : public test_support::SystemCFixture {
     probe = std::make_unique<model::WaveProbe>(
         "probe", config, chip, [this](std::string_view text) { file << text; }, [this] { return memory; });
   }
-  /// What was written; after finish().
+  /// What was written, if the probe has finished.
   VcdReader vcd() const {
     std::istringstream in(file.str());
     return VcdReader(in);

@@ -34,8 +34,8 @@ class PioTiming {
   /// When the memory side of a request that starts at `start` begins.
   Cycles memory_start(const MonoPieces& pieces, Cycles start) const;
   /// When the request is over.
-  @param memory_end when the last byte has arrived at the engine(read) or at the memory(write) Cycles
-      finish(const MonoPieces& pieces, Cycles start, Cycles memory_end) const;
+  /// @param memory_end when the last byte has arrived at the engine (read) or at the memory (write)
+  Cycles finish(const MonoPieces& pieces, Cycles start, Cycles memory_end) const;
 
  private:
   Cycles setup_cycles_;

@@ -298,7 +298,7 @@ void ReferenceChecker::follow_paths(const Text& text, FollowedReferences& result
     while (name.back() == '.' || name.back() == '-') name.pop_back();
     if (is_markdown(name)) continue;  // follow_pages
     ++result.followed;
-    if (!exists(name)) {
+    if (!exists(name) && !exists(name + ".in")) {  // which CMake makes it from
       result.broken.push_back(
           {text.file(), text.line_of(std::size_t(match.position(2))), name, "no such file or folder"});
     }

@@ -23,10 +23,6 @@ bool is_markdown(const std::string& file) {
   return ends_with(file, ".md");
 }
 
-bool is_source(const std::string& file) {
-  return ends_with(file, ".cpp") || ends_with(file, ".hpp");
-}
-
 std::string read_text(const fs::path& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read " + path.string());
@@ -208,12 +204,12 @@ FollowedReferences ReferenceChecker::follow(const std::string& file, const std::
   return result;
 }
 
-/// "[S5, S7]", "[Horowitz]": sources of facts about the chip.
+/// "[S5, S7]": sources of facts about the chip. Where the chip is configured, "[Horowitz]", too.
 void ReferenceChecker::follow_tags(const Text& text, FollowedReferences& result) const {
-  static const std::regex in_pages(R"(\[(S\d+[a-z]?(?:, S\d+[a-z]?)*)\])");
-  static const std::regex in_sources(
-      R"([ ("]\[(S\d+[a-z]?(?:, S\d+[a-z]?)*|[A-Z][A-Za-z0-9]{3,}(?:-\d+)?)\])");
-  for (const std::smatch& match : matches(text.joined(), is_source(text.file()) ? in_sources : in_pages)) {
+  static const std::regex numbered(R"(\[(S\d+[a-z]?(?:, S\d+[a-z]?)*)\])");
+  static const std::regex named(R"([ ("]\[(S\d+[a-z]?(?:, S\d+[a-z]?)*|[A-Z][A-Za-z0-9]{3,}(?:-\d+)?)\])");
+  for (const std::smatch& match :
+       matches(text.joined(), text.file().rfind("model/config/", 0) == 0 ? named : numbered)) {
     std::istringstream ids(match[1]);
     for (std::string id; std::getline(ids >> std::ws, id, ',');) {
       ++result.followed;

@@ -86,7 +86,7 @@ Preset g80_like() {
 /// on three of the 24 cells (`csx600 calibrate`).
 std::vector<PresetOverride> paper_fitted_constants() {
   return {{"poly.code_quality_factor", kPaperCodeQualityFactor, kInferred,
-           "fitted to segments, n = 1: the paper's code is \"not optimised\" (section 5)"},
+           "fitted to segments, n = 1: the paper's code is \"not optimised\" (paper, section 5)"},
           {"pio.per_pe_cycles", kPaperPerPeCycles, kInferred, "fitted to segments, n = 0"},
           {"control.transfer_call_cycles", kPaperTransferCallCycles, kInferred,
            "fitted to direct, n = 1: software overhead of small transfers is measured [S13]"}};

@@ -91,8 +91,7 @@ void declare_floating_point_cycles(Parameters& table) {
 void declare_vector_cycles(Parameters& table) {
   constexpr Confidence assumed = Confidence::assumed;
   const std::string meaning =
-      " of a vector of 4: one element a cycle [reference, section 1: \"full rate only for 4-element vector "
-      "intrinsics\"]";
+      " of a vector of 4: one element a cycle, which scalar code does not reach [reference, section 1]";
   const std::string both =
       " of a vector of 4: adder and multiplier work in the same clock, not fused [S7, S8]; one element a "
       "cycle "
@@ -322,8 +321,7 @@ const std::vector<ParameterInfo>& parameter_table() {
 const std::vector<ParameterSource>& parameter_sources() {
   static const std::vector<ParameterSource> sources = {
       {"reference",
-       "the project's own collection of public facts, kept apart from the code; defaults where nothing is "
-       "public"},
+       "docs/csx600.md, the project's collection of public facts; defaults where nothing is public"},
       {"paper", "Coulthurst et al., Parallel Path Tracing using Incoherent Path-Atom Binning"},
       {"S1", "ClearSpeed: Technology, http://www.clearspeed.com/acceleration/technology/"},
       {"S3", "ClearSpeed SDK Reference Manual 3.1, 06-RM-1600 rev 2.B, p. 163"},

@@ -11,8 +11,8 @@
 
 namespace model {
 
-/// Decides which hardware thread has the control unit (csx600.md, section 1: fixed priority, switch when the
-/// running thread waits on a semaphore). One runs; it goes on until it waits for a signal that has not
+/// Decides which hardware thread has the control unit (docs/csx600.md, section 1: fixed priority, switch when
+/// the running thread waits on a semaphore). One runs; it goes on until it waits for a signal that has not
 /// arrived, or until a thread of higher priority is ready. Among ready threads the highest priority runs,
 /// among equals the one that was started first; equals do not take over from each other.
 ///

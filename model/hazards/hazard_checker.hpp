@@ -15,8 +15,8 @@
 
 namespace model {
 
-/// Finds firmware that uses what a transfer may still be reading or writing. The paper's n-buffering
-/// (section 3.3) is explicit, so firmware can get it wrong, and a model in which the data happen to be there
+/// Finds firmware that uses what a transfer may still be reading or writing. n-buffering
+/// (paper, section 3.3) is explicit, so it can be got wrong, and a model in which data happen to be there
 /// in time would not show it.
 ///
 /// A transfer is outstanding from its start until the firmware knows that it is over: until its semaphore was

@@ -21,7 +21,7 @@ struct ClearConnectStatistics {
 };
 
 /// The timing of packets between an initiator and the DDR. Each initiator has a link each way at
-/// `bytes_per_cycle`; all share the DDR's port, which is as wide as the DDR (csx600.md, section 1: 8
+/// `bytes_per_cycle`; all share the DDR's port, which is as wide as the DDR (docs/csx600.md, section 1: 8
 /// bytes/cycle a node, 16 at the DDR port). Every link and the port, each way, is a time line (next free
 /// cycle). Packets are cut through: a stage passes on the first bytes before it has the last. A
 /// packet without data (a read request) takes one cycle; widths are those of the payload, so headers of data

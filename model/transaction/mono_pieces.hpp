@@ -58,7 +58,7 @@ class MonoPieces {
   int pes() const { return pes_; }        ///< PEs that take part
   int pieces() const { return pieces_; }  ///< addressed pieces: `pes` less the consolidated ones
   /// Pieces off an 8-byte boundary, or across more packet boundaries than their size makes necessary
-  /// (csx600.md, section 2, counts none for an array of 80-byte pieces in 64-byte packets).
+  /// (docs/csx600.md, section 2, counts none for an array of 80-byte pieces in 64-byte packets).
   int misaligned() const { return misaligned_; }
   std::uint64_t poly_bytes() const { return std::uint64_t(pes_) * std::uint64_t(bytes_per_pe_); }
   std::uint64_t mono_bytes() const { return std::uint64_t(pieces_) * std::uint64_t(bytes_per_pe_); }

@@ -61,7 +61,7 @@ PredictionError prediction_error(const std::vector<double>& seconds, int chips =
 /// bins of 8 blocks, and roulette late, because radiance takes below 1 % only when paths are long.
 path_tracer::ProgramConfig paper_program();
 
-/// Figure 4: 480 x 480, 1000 segments a pixel.
+/// The image (paper, figure 4): 480 x 480, 1000 segments a pixel.
 inline constexpr double kPaperImageSegments = 480.0 * 480.0 * 1000.0;
 inline constexpr double kPaperImageSeconds = 3036.37;
 

@@ -23,7 +23,7 @@ struct TraversalCosts {
 
 /// Brute force: what the intersect kernel issues for a triangle. With a tree: its PIO requests or its
 /// kernels, whichever takes longer, with as many leaves, treelets and nodes a ray as the generated scenes
-/// showed (README, "Real scenes").
+/// showed (docs/results/real-scenes.md).
 TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
                                   const model::ChipConfig& chip);
 

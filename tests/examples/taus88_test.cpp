@@ -59,7 +59,7 @@ TEST_F(Taus88Test, GoesOnFromItsSavedState) {
   EXPECT_EQ(resumed, third);
 }
 
-/// What the reference assumes of a generator (csx600.md, 6.3): 40 cycles, at 2 a 32-bit operation.
+/// Cost of a generator (docs/csx600.md, section 6.3): 40 cycles, at 2 a 32-bit operation.
 TEST_F(Taus88Test, TakesTwentyOperations) {
   EXPECT_EQ(issued_by([&] {
               Taus88 random(state);

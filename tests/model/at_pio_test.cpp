@@ -67,8 +67,7 @@ TEST_F(AtPio, LongReadEndsWithThePeSide) {
   config.pio.setup_cycles = 150;
   config.pio.per_pe_cycles = 16;
   build_at(config);
-  // As loosely timed, csx600.md, section 2: 80 B x 96 PEs = 150 + 96 x 26 = 2646 cycles; latency hides behind
-  // PEs.
+  // As loosely timed, 150 + 96 x 26 = 2646 cycles (docs/csx600.md, section 2); latency hides behind PEs.
   EXPECT_EQ(time_of(read(MonoPlaces::array(0, 80), 80, LaneMask::first(96))), 3646u);
   EXPECT_EQ(engine->statistics().memory_wait_cycles, 0u);
 }

@@ -105,7 +105,7 @@ TEST_F(PioEngine, ReferenceExampleOf96Pes) {
   config.pio.setup_cycles = 150;
   config.pio.per_pe_cycles = 16;
   build(config);
-  // csx600.md, section 2: 80 B x 96 PEs = 150 + 96 x 26 = 2646 cycles.
+  // docs/csx600.md, section 2: 80 B x 96 PEs = 150 + 96 x 26 = 2646 cycles.
   engine->enqueue(read(MonoPlaces::array(0, 80), 80, LaneMask::first(96), 0), 0);
   engine->enqueue(write(MonoPlaces::array(0, 80), 80, LaneMask::first(96), 1), 10000);
   EXPECT_EQ(signal(0), 2646u);

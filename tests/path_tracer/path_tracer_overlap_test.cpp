@@ -235,7 +235,7 @@ Copies copies(const std::vector<std::string>& calls, const std::string& kind) {
 }
 
 /// "0-buffering simply means that each load or save operation was carried out when it occurred in the code"
-/// (section 4.1).
+/// (paper, section 4.1).
 TEST_P(Overlap, CopiesOfADirectionWithoutBuffersAreOverAtOnce) {
   for (const auto& [loads, saves] : {std::pair(true, true), {true, false}, {false, true}, {false, false}}) {
     SCOPED_TRACE(testing::Message() << "loads " << loads << " saves " << saves);

@@ -69,7 +69,7 @@ TEST_F(Random, GivesTheKnownAnswersOfPhilox) {
     std::uint64_t seed;
     Words answer;
   };
-  // Random123 1.14, tests/kat_vectors, philox4x32 with 10 rounds.
+  // Random123 1.14, its file kat_vectors, philox4x32 with 10 rounds.
   const Known known[] = {
       {{0, 0, 0, 0}, 0, {0x6627e8d5u, 0xe169c58du, 0xbc57ac4cu, 0x9b00dbd8u}},
       {{0xffffffffu, 0xffffffffu, 0xffffffffu, 0xffffffffu},

@@ -1,4 +1,4 @@
-// What design.md, section 7, promises of every run, on small images: equal bits, equal cycles, equal
+// What docs/design.md, section 7, promises of every run, on small images: equal bits, equal cycles, equal
 // statistics.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What can be computed from the files that observe a run equals its statistics (design.md, invariant 4),
+// What can be computed from the files that observe a run equals its statistics (docs/design.md, invariant 4),
 // loosely and approximately timed.
 
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@ using path_tracer::Program;
 using testbench::paper_rows;
 using testbench::PaperRow;
 
-/// As design.md, section 9, has them.
+/// As docs/paper.md, section 4.1, has them.
 struct Cells {
   int table;
   const char* label;

@@ -13,7 +13,7 @@ namespace path_tracer {
 /// same ring, so that the last steps of a bin overlap with the first of the next.
 ///
 /// A synchronous ring does without: each copy is over before the next instruction ("0-buffering simply means
-/// that each load or save operation was carried out when it occurred in the code", section 4.1).
+/// that each load or save operation was carried out when it occurred in the code", paper, section 4.1).
 class TransferRing {
  public:
   struct Buffers {

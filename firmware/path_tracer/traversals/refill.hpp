@@ -3,7 +3,7 @@
 #include "firmware/path_tracer/traversals/tree_stage.hpp"
 
 /// Another circular buffer than the paper's for the intersection step: rays stay in the SRAM of their PE
-/// until they are through, and "the PEs with unsuccessful task can load more data" (section 4). What
+/// until they are through, and "the PEs with unsuccessful task can load more data" (paper, section 4). What
 /// n-buffering wants besides the rays that are processed are others whose loads are under way: n + 1 groups
 /// of a ray a PE take turns.
 namespace path_tracer {

@@ -17,14 +17,23 @@ class CycleLedger {
   Cycles now() const { return now_; }
 
   /// @param semaphore the one waited on or operated on, -1: none
-  void spend(CycleCause cause, Cycles cycles, int semaphore = -1);
+  void spend(CycleCause cause, Cycles cycles, int semaphore = -1) {
+    if (cycles == 0) return;
+    statistics_.cycles[std::size_t(cause)] += cycles;
+    if (observer_ != nullptr) observer_->spent(cause, now_, now_ + cycles, semaphore);
+    now_ += cycles;
+  }
   /// Spends up to `cycle`; does nothing when that is over.
   void spend_until(Cycles cycle, CycleCause cause, int semaphore = -1) {
     if (cycle > now_) spend(cause, cycle - now_, semaphore);
   }
   /// The next cycles go to `cause`; how many is not known yet.
-  void report_begin(CycleCause cause, int semaphore = -1);
-  void report_thread(int thread, ThreadState state);
+  void report_begin(CycleCause cause, int semaphore = -1) {
+    if (observer_ != nullptr) observer_->began(cause, now_, semaphore);
+  }
+  void report_thread(int thread, ThreadState state) {
+    if (observer_ != nullptr) observer_->thread_changed(thread, state, now_);
+  }
 
   /// Waits for programmed I/O since this was asked for the last time.
   PioWaits take_waits();
@@ -33,7 +42,11 @@ class CycleLedger {
   void set_observer(ControlObserver* observer, Cycles sync_cycles);
   ControlObserver* observer() const { return observer_; }
   /// Whether sync_cycles are over. If so, they begin anew.
-  bool observer_is_due();
+  bool observer_is_due() {
+    if (observer_ == nullptr || now_ < next_sync_) return false;
+    next_sync_ = now_ + sync_cycles_;
+    return true;
+  }
 
   ControlStatistics& statistics() { return statistics_; }
   const ControlStatistics& statistics() const { return statistics_; }

@@ -2,11 +2,6 @@
 
 namespace model {
 
-void TimeCoupling::settle_pio(Cycles cycle) {
-  if (host_is_transferring()) settle_pio_beside_host(cycle);
-  pio_->settle(cycle);
-}
-
 void TimeCoupling::settle_pio_beside_host(Cycles cycle) {
   for (auto next = pio_->next_start(); host_is_transferring() && next && *next <= cycle;
        next = pio_->next_start()) {
@@ -26,10 +21,6 @@ bool TimeCoupling::serve_next_request() {
 void TimeCoupling::synchronise() {
   settle_pio(ledger_.now());
   wait_until(ledger_.now());
-}
-
-void TimeCoupling::synchronise_for_observer() {
-  if (ledger_.observer_is_due()) synchronise();
 }
 
 void TimeCoupling::wait_for(const sc_core::sc_event& event, std::optional<Cycles> at_the_latest) {

@@ -24,14 +24,19 @@ class TimeCoupling {
   Cycles present() const { return clock_.cycle_at(sc_core::sc_time_stamp()); }
 
   /// Settles the PIO engine up to `cycle`.
-  void settle_pio(Cycles cycle);
+  void settle_pio(Cycles cycle) {
+    if (host_is_transferring()) settle_pio_beside_host(cycle);
+    pio_->settle(cycle);
+  }
   /// Serves the next queued request, whenever it starts; false when none is queued.
   bool serve_next_request();
 
   /// SystemC time catches up with the firmware.
   void synchronise();
   /// Makes the present of what was reported to the observer, before too much of it lies in the future.
-  void synchronise_for_observer();
+  void synchronise_for_observer() {
+    if (ledger_.observer_is_due()) synchronise();
+  }
 
   /// Lets SystemC time pass until `event` or, if given, until the cycle `at_the_latest`.
   void wait_for(const sc_core::sc_event& event, std::optional<Cycles> at_the_latest);

@@ -7,7 +7,7 @@ packages=(
   libsleef-dev librandom123-dev libtinyobjloader-dev libtinygltf-dev libembree-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev
-  libopenmpi-dev openmpi-bin gtkwave chromium
+  libopenmpi-dev openmpi-bin gtkwave chromium python3
 )
 
 install_missing_packages() {

@@ -12,7 +12,7 @@
 #include "testbench/run/host_pc.hpp"
 #include "testbench/run/results.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/host_time.hpp"
+#include "testbench/system/simulator_time.hpp"
 
 namespace testbench {
 namespace {
@@ -121,7 +121,7 @@ class Run {
   ProgressRelay relay_;
   RenderResult result_;
   std::optional<model::HazardChecker> checker_;
-  HostTimer timer_;
+  SimulatorTimer timer_;
 };
 
 /// A machine without a clock; a recording one where a stream is wanted.

@@ -6,7 +6,7 @@
 
 #include "testbench/run/render.hpp"
 #include "testbench/statistics/energy.hpp"
-#include "testbench/system/host_time.hpp"
+#include "testbench/system/simulator_time.hpp"
 
 namespace testbench {
 namespace {

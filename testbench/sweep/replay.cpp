@@ -2,7 +2,7 @@
 
 #include "testbench/run/host_pc.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/host_time.hpp"
+#include "testbench/system/simulator_time.hpp"
 
 namespace testbench {
 
@@ -14,7 +14,7 @@ Recording record_render(const Scene& scene, const RenderOptions& options) {
 }
 
 RenderResult replay_on_chip(const Recording& recording, const RenderOptions& options) {
-  const HostTimer timer;
+  const SimulatorTimer timer;
   require_mono_memory(recording.image, options.chip);
   RenderResult result = recording.result;
   // The host fetches as many results as it would, but what it finds is of no use.

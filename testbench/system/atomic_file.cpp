@@ -3,11 +3,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 #include <cerrno>
-#include <cstring>
 #include <exception>
 #include <string>
 #include <system_error>
 
+#include "testbench/system/descriptor.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -15,17 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string system_message(int error) {
-  return std::generic_category().message(error);
-}
-
 [[noreturn]] void fail_input(const fs::path& path, const std::string& found) {
   throw InputError(path.string() + ": output file: found " + found +
                    "; allowed: a new or regular file in an existing directory that can be written to");
 }
 
-/// Creates an empty file beside `path` that nothing else uses. Its name shows where it came from, should it
-/// survive a kill: .<name>.<process>.<number>.tmp
+/// Creates an empty file of a new name beside `path`. The name shows where the file came from, in case it
+/// survives a kill: .<name>.<process>.<number>.tmp
 fs::path create_temporary(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
@@ -45,26 +41,11 @@ fs::path create_temporary(const fs::path& path) {
   }
 }
 
-void write_all(int descriptor, std::string_view bytes, const fs::path& target) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) throw RunError(target.string() + ": cannot be written: " + system_message(errno));
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
 void write_bytes(const fs::path& temporary, std::string_view bytes, const fs::path& target) {
   const int descriptor = open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor < 0) throw RunError(target.string() + ": cannot be written: " + system_message(errno));
-  try {
-    write_all(descriptor, bytes, target);
-  } catch (...) {
-    close(descriptor);
-    throw;
-  }
-  if (close(descriptor) != 0)
-    throw RunError(target.string() + ": cannot be written: " + system_message(errno));
+  int error = descriptor < 0 ? errno : write_all(descriptor, bytes);
+  if (descriptor >= 0 && close(descriptor) != 0 && error == 0) error = errno;
+  if (error != 0) throw RunError(target.string() + ": cannot be written: " + system_message(error));
 }
 
 }  // namespace

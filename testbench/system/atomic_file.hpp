@@ -6,11 +6,11 @@
 
 namespace testbench {
 
-/// A new, empty file in the directory of `target`, removed at the end of the scope unless it was renamed
-/// away.
+/// A new, empty file in the directory of `target`. The destructor removes it unless rename_to() has been
+/// called.
 class TemporaryFile {
  public:
-  /// Throws InputError if nothing can be created there or `target` is not a regular file.
+  /// Throws InputError if no file can be created there or `target` exists and is not a regular file.
   explicit TemporaryFile(const std::filesystem::path& target);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -25,18 +25,18 @@ class TemporaryFile {
 };
 
 /// Calls `write` with the name of a new, empty file in the directory of `path`, then renames that file to
-/// `path`: `path` holds either its old content or all of the new, never a part. If anything fails the
-/// temporary file is removed. Throws InputError if nothing can be created there or `path` is not a regular
-/// file, RunError if writing fails (an exception of `write` that is not an InputError or RunError becomes a
-/// RunError naming `path`).
+/// `path`. So `path` holds either its old content or all of the new, never a part. The temporary file is
+/// removed when writing fails. Throws InputError if no file can be created there or `path` is not a regular
+/// file, and RunError if writing fails. Any other exception that `write` throws becomes a RunError that names
+/// `path`.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// write_atomically() of a whole content that is already in memory. RunError on a short write (disk full).
+/// write_atomically() for content that is already in memory. Throws RunError on a short write (disk full).
 void write_bytes_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-/// Checks before a long run that write_atomically(path) can start: InputError if it cannot. Leaves nothing
-/// behind.
+/// Checks before a long run that write_atomically(path) can start; throws InputError if it cannot. Leaves no
+/// file behind.
 void require_writable(const std::filesystem::path& path);
 
 }  // namespace testbench

@@ -5,7 +5,7 @@
 
 namespace testbench {
 
-/// SHA-256 as 64 hexadecimal digits.
+/// Returns the SHA-256 of `bytes` as 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
 }  // namespace testbench

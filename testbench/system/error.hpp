@@ -5,14 +5,14 @@
 
 namespace testbench {
 
-/// Wrong usage or input: the message is one line that names the file, key or argument, what was found and
-/// what is allowed. The command line prints it and exits with 2.
+/// Wrong usage or wrong input. The message is one line that names the file, key or argument, what was found
+/// and what is allowed. The command line prints it and exits with code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A run that failed although its input was right (disk full, invariant broken). Exit code 1.
+/// A run that failed although its input was right (disk full, broken invariant). Exit code 1.
 class RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

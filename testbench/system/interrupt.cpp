@@ -5,7 +5,7 @@
 namespace testbench {
 namespace {
 
-// A signal handler reaches nothing but statics.
+// A signal handler can reach only static variables.
 volatile std::sig_atomic_t interrupt_requested = 0;
 
 void request_interrupt(int) {

@@ -2,7 +2,8 @@
 
 namespace testbench {
 
-/// While it lives, Ctrl-C asks instead of killing: requested() turns true and the run ends cleanly.
+/// While an InterruptGuard lives, SIGINT (Ctrl-C) and SIGTERM do not kill the process: requested() becomes
+/// true, and the run can end cleanly.
 class InterruptGuard {
  public:
   InterruptGuard();

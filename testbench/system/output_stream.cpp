@@ -12,6 +12,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "testbench/system/descriptor.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -21,28 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kConverter = "vcd2fst";
 
-std::string system_message(int error) {
-  return std::generic_category().message(error);
-}
-
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw RunError(path.string() + ": cannot be written: " + what);
 }
 
-/// Calls `put(bytes, size)` until all is out; returns errno of the first failure or 0.
-template <class Put>
-int put_all(std::string_view bytes, Put&& put) {
-  while (!bytes.empty()) {
-    const ssize_t count = put(bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return errno;
-    bytes.remove_prefix(std::size_t(count));
-  }
-  return 0;
-}
-
-/// An FST is a chain of blocks: a byte of type, then eight of length, the most significant first. The
-/// converter does not look at the result of its writes; a file cut short ends within a block.
+/// Whether the file ends where a block ends. An FST is a chain of blocks, each with a type byte and eight
+/// bytes of length, most significant first. The converter ignores failed writes, so a full disk leaves a file
+/// that ends within a block.
 bool is_whole_fst(const fs::path& path) {
   constexpr std::uint64_t kTypeBytes = 1;
   const std::uint64_t size = fs::file_size(path);
@@ -81,9 +67,7 @@ StreamedFile::~StreamedFile() {
 }
 
 void StreamedFile::write(std::string_view bytes) noexcept {
-  if (error_ != 0) return;
-  error_ =
-      put_all(bytes, [&](const char* data, std::size_t size) { return ::write(descriptor_, data, size); });
+  if (error_ == 0) error_ = write_all(descriptor_, bytes);
 }
 
 void StreamedFile::finish() {
@@ -99,11 +83,12 @@ FstFile::FstFile(const fs::path& path) : path_(path), temporary_(path) {
 
 FstFile::~FstFile() {
   if (converter_ >= 0) end_converter();
-  std::error_code ignored;  // where it keeps names until it is done
+  std::error_code ignored;  // the converter's own temporary file
   if (!temporary_.path().empty()) fs::remove(temporary_.path().string() + ".hier", ignored);
 }
 
-/// A socket rather than a pipe: send() can be told not to raise a signal when the reader is gone.
+/// Uses a socket rather than a pipe, because send() can be told not to raise SIGPIPE when the reader has
+/// ended.
 void FstFile::start_converter() {
   std::array<int, 2> ends;
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
@@ -133,12 +118,10 @@ void FstFile::start_converter() {
 }
 
 void FstFile::write(std::string_view bytes) noexcept {
-  if (error_ != 0) return;
-  error_ = put_all(
-      bytes, [&](const char* data, std::size_t size) { return send(socket_, data, size, MSG_NOSIGNAL); });
+  if (error_ == 0) error_ = send_all(socket_, bytes);
 }
 
-/// Returns its status.
+/// Closes the converter's input, waits for its end and returns its wait status.
 int FstFile::end_converter() {
   close(socket_);
   int status = 0;

@@ -13,15 +13,15 @@ namespace testbench {
 inline constexpr std::size_t kWriteBufferBytes = 64 * 1024;
 
 /// A file that is written piece by piece while a chip runs. It has a temporary name until finish(); without
-/// it, nothing is left.
+/// finish() it is removed.
 class OutputStream {
  public:
   virtual ~OutputStream() = default;
 
-  /// Never throws, so that a run in progress is not lost: after the first failure nothing more is written,
-  /// and finish() tells.
+  /// Never throws, so that a run in progress is not lost. After the first failure all further bytes are
+  /// dropped, and finish() reports that failure.
   virtual void write(std::string_view bytes) noexcept = 0;
-  /// All was written: gives the file its name. Throws RunError with the first failure.
+  /// Gives the complete file its name. Throws RunError with the first failure.
   virtual void finish() = 0;
 };
 
@@ -43,10 +43,11 @@ class StreamedFile : public OutputStream {
   int error_ = 0;
 };
 
-/// Takes a VCD and leaves an FST: feeds vcd2fst (Debian: gtkwave), so that no VCD reaches the disk.
+/// Converts the VCD written to it into an FST file, with the program vcd2fst (Debian package gtkwave). No VCD
+/// reaches the disk.
 class FstFile : public OutputStream {
  public:
-  /// Throws InputError if the file cannot be created or there is no vcd2fst.
+  /// Throws InputError if the file cannot be created or vcd2fst is not installed.
   explicit FstFile(const std::filesystem::path& path);
   ~FstFile() override;
   FstFile(const FstFile&) = delete;
@@ -62,11 +63,11 @@ class FstFile : public OutputStream {
   std::filesystem::path path_;
   TemporaryFile temporary_;
   int socket_ = -1;
-  int converter_ = -1;  ///< process
+  int converter_ = -1;  ///< process ID; -1 when none runs
   int error_ = 0;
 };
 
-/// By the name's end: ".fst" or anything else.
+/// An FstFile for a name that ends in ".fst", a StreamedFile for any other name.
 std::unique_ptr<OutputStream> make_wave_stream(const std::filesystem::path& path);
 
 }  // namespace testbench

@@ -8,9 +8,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <map>
 
+#include "testbench/system/descriptor.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -22,16 +22,6 @@ struct Child {
   std::size_t job;
   int pipe;
 };
-
-void write_all(int pipe, const std::string& text) {
-  std::size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t count = write(pipe, text.data() + written, text.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    written += std::size_t(count);
-  }
-}
 
 std::string read_all(int pipe) {
   std::string text;
@@ -57,7 +47,7 @@ std::string read_all(int pipe) {
     status = run_error;
     text = error.what();
   }
-  write_all(pipe, text);
+  if (write_all(pipe, text) != 0) status = run_error;
   close(pipe);
   _exit(status);
 }
@@ -80,11 +70,11 @@ Children::const_iterator first_with_result(const Children& running) {
 
 std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
   int ends[2];
-  if (pipe(ends) != 0) throw RunError(std::string("cannot make a pipe: ") + std::strerror(errno));
+  if (pipe(ends) != 0) throw RunError("cannot make a pipe: " + system_message(errno));
   std::fflush(nullptr);
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child < 0) throw RunError(std::string("cannot start a process: ") + std::strerror(errno));
+  if (child < 0) throw RunError("cannot start a process: " + system_message(errno));
   if (child == 0) {
     end_with(parent);
     close(ends[0]);
@@ -98,7 +88,7 @@ std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
 
 void end_with(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(run_error);  // it ended before this call
+  if (getppid() != parent) _exit(run_error);  // the parent ended before this call
 }
 
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,

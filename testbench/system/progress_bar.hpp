@@ -5,7 +5,8 @@
 
 namespace testbench {
 
-/// One line on the terminal: bar, share, time left. Silent when standard error is not a terminal.
+/// One line on the terminal with a bar, the share done and the time left. Prints nothing when standard error
+/// is not a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
@@ -13,7 +14,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// @param share 0 to 1; cheap to call often
+  /// Cheap enough to be called often. @param share the share done, 0 to 1
   void show(double share);
 
  private:

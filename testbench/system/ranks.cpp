@@ -10,7 +10,7 @@ int launched_processes() {
   return 1;
 }
 
-/// In terms of messages: few and small, so rank 0 gathers and hands out.
+/// Messages are few and small, so rank 0 collects all parts and sends them to all ranks.
 std::vector<std::string> Ranks::exchange(const std::string& bytes) {
   std::vector<std::string> all(std::size_t(size_), bytes);
   if (alone()) return all;

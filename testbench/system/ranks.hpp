@@ -6,8 +6,8 @@
 
 namespace testbench {
 
-/// The processes that one `mpirun` started, which may be on several machines; a plain start is one rank.
-/// Built with MPI where it is installed (ranks_mpi.cpp), else without (ranks_alone.cpp).
+/// The processes that one `mpirun` started, possibly on several machines. A process started without `mpirun`
+/// is the only rank. Built from ranks_mpi.cpp where MPI is installed, else from ranks_alone.cpp.
 class Ranks {
  public:
   struct Message {
@@ -15,10 +15,11 @@ class Ranks {
     std::string bytes;
   };
 
-  /// Joins the others. Once a process. Throws InputError when several were started and this build has no MPI.
+  /// Joins the other ranks; at most one object per process. Throws InputError when several ranks were started
+  /// and this build has no MPI.
   Ranks();
-  /// Leaves; waits for all others to do so.
-  ~Ranks();  // NOLINT(performance-trivially-destructible): with MPI it does something
+  /// Leaves the other ranks and waits until all of them have left.
+  ~Ranks();  // NOLINT(performance-trivially-destructible): not trivial with MPI
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
 
@@ -28,14 +29,14 @@ class Ranks {
   bool is_first() const { return rank_ == 0; }
 
   void send(int to, const std::string& bytes);
-  /// Of any rank; waits for one.
+  /// Waits for a message from any rank.
   Message receive();
-  /// Nothing if none has arrived.
+  /// Returns std::nullopt if no message has arrived.
   std::optional<Message> try_receive();
   /// Ends the processes of all ranks.
   [[noreturn]] void abort(int exit_code);
 
-  /// All ranks call it; each gets what each gave, by rank.
+  /// Must be called by all ranks. Each gets the bytes of every rank, by rank.
   std::vector<std::string> exchange(const std::string& bytes);
 
  private:
@@ -43,7 +44,7 @@ class Ranks {
   int size_ = 1;
 };
 
-/// How many processes a launcher says that it started (Open MPI, PMI); 1 if none does.
+/// The number of processes that the launcher reports (Open MPI, PMI); 1 without a launcher.
 int launched_processes();
 
 }  // namespace testbench

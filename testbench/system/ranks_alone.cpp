@@ -1,4 +1,4 @@
-// Where MPI is not installed.
+// Ranks for a build without MPI: one rank.
 
 #include <cstdlib>
 
@@ -18,7 +18,7 @@ Ranks::~Ranks() = default;
 void Ranks::send(int, const std::string&) {}
 
 Ranks::Message Ranks::receive() {
-  throw RunError("a message is waited for, but there is one rank");
+  throw RunError("found a wait for a message, but there is only one rank");
 }
 
 std::optional<Ranks::Message> Ranks::try_receive() {

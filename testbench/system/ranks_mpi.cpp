@@ -1,4 +1,4 @@
-// Where MPI is installed. Its C interface only; one thread and one tag are all that is used.
+// Ranks with MPI, through its C interface, with one thread and one message tag.
 
 #include <mpi.h>
 
@@ -21,7 +21,7 @@ Ranks::Message take(const MPI_Status& status) {
 
 }  // namespace
 
-/// A plain start leaves MPI alone, which would look for a launcher and take its time.
+/// Without a launcher MPI is not initialised, because MPI_Init would search for one, which takes long.
 Ranks::Ranks() {
   if (launched_processes() <= 1) return;
   MPI_Init(nullptr, nullptr);

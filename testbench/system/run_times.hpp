@@ -5,19 +5,19 @@
 
 namespace testbench {
 
-/// CPU seconds of one kind of run, repeated. Kinds that are compared run in turn, so that the n-th times of
-/// two of them met the same neighbours on the machine.
+/// CPU seconds of one kind of run, one value per repetition. Kinds that are compared run in turn, so the n-th
+/// repetitions of both met the same load of the machine.
 struct RunTimes {
   std::vector<double> cpu_seconds;
 
   double median() const;
 };
 
-/// The median of `values`, of which there is at least one; of an even number the mean of the middle two.
+/// The median of at least one value; the mean of the two middle values if their number is even.
 double median(std::vector<double> values);
 
-/// How many times longer a run of `slow` takes: the median over the repetitions of both run one after the
-/// other. A machine that is slowed down for a while slows both and leaves the ratio.
+/// How many times longer a run of `slow` takes than one of `fast`: the median of the ratios of their n-th
+/// repetitions. A machine that is slow for a while slows both and leaves the ratio.
 double ratio(const RunTimes& slow, const RunTimes& fast);
 
 }  // namespace testbench

@@ -9,26 +9,15 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 
+#include "testbench/system/descriptor.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/processes.hpp"
 
 namespace testbench {
 namespace {
 
-/// False when the other side is gone.
-bool send_all(int socket, const char* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t sent = send(socket, bytes, count, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) return false;
-    bytes += sent;
-    count -= std::size_t(sent);
-  }
-  return true;
-}
-
+/// Returns false when the other side has closed the socket.
 bool receive_all(int socket, char* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t received = recv(socket, bytes, count, 0);
@@ -40,11 +29,11 @@ bool receive_all(int socket, char* bytes, std::size_t count) {
   return true;
 }
 
-/// A message is its length and its bytes.
+/// A message is its length in 8 bytes, then its bytes.
 bool send_message(int socket, const std::string& text) {
   const std::uint64_t bytes = text.size();
-  return send_all(socket, reinterpret_cast<const char*>(&bytes), sizeof(bytes)) &&
-         send_all(socket, text.data(), text.size());
+  return send_all(socket, {reinterpret_cast<const char*>(&bytes), sizeof(bytes)}) == 0 &&
+         send_all(socket, text) == 0;
 }
 
 std::optional<std::string> receive_message(int socket) {
@@ -54,7 +43,7 @@ std::optional<std::string> receive_message(int socket) {
   return receive_all(socket, text.data(), bytes) ? std::optional(std::move(text)) : std::nullopt;
 }
 
-/// A wish to stop goes to the first process alone, which decides.
+/// A worker ignores signals that ask it to stop; the first process decides when workers end.
 [[noreturn]] void serve(int socket, const Workers::MakeAnswer& make_answer) {
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
@@ -78,11 +67,11 @@ Workers::~Workers() {
 void Workers::start(Worker& worker) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    throw RunError(std::string("cannot make a socket: ") + std::strerror(errno));
+    throw RunError("cannot make a socket: " + system_message(errno));
   std::fflush(nullptr);
   const pid_t parent = getpid();
   worker.process = fork();
-  if (worker.process < 0) throw RunError(std::string("cannot start a process: ") + std::strerror(errno));
+  if (worker.process < 0) throw RunError("cannot start a process: " + system_message(errno));
   if (worker.process == 0) {
     end_with(parent);
     close(ends[0]);
@@ -102,7 +91,7 @@ void Workers::stop(Worker& worker) {
 }
 
 void Workers::send(int worker, const std::string& order) {
-  // One that is gone shows when its reply is read.
+  // A failure is not handled here: next() finds that the worker has ended when it reads the reply.
   send_message(workers_[std::size_t(worker)].socket, order);
 }
 

@@ -9,28 +9,29 @@
 
 namespace testbench {
 
-/// Processes that answer orders, one at a time each, and keep what they need from one order to the next. They
-/// end with this process, whatever ends it.
+/// Processes that answer orders, each one order at a time, and keep state from one order to the next. They
+/// end when this process ends, for whatever reason.
 class Workers {
  public:
   using Answer = std::function<std::string(const std::string& order)>;
-  using MakeAnswer = std::function<Answer()>;  ///< called in each worker, once
+  using MakeAnswer = std::function<Answer()>;  ///< called once in each worker
 
   struct Reply {
     int worker = 0;
-    std::optional<std::string> text;  ///< nothing: it crashed over its order, and another takes its place
+    std::optional<std::string>
+        text;  ///< std::nullopt: the worker crashed during its order and was replaced by a new one
   };
 
-  /// Throws RunError when there is no process to be had.
+  /// Throws RunError when a process cannot be started.
   Workers(int count, MakeAnswer make_answer);
-  /// Kills them.
+  /// Kills all workers.
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// To a worker that has replied to its last order.
+  /// Sends an order to a worker that has replied to its last one.
   void send(int worker, const std::string& order);
-  /// The next reply; nothing if none comes for that long.
+  /// The next reply; std::nullopt if none arrives within `milliseconds`.
   std::optional<Reply> next(int milliseconds);
 
  private:

@@ -1,4 +1,4 @@
-#include "testbench/system/host_time.hpp"
+#include "testbench/system/simulator_time.hpp"
 
 #include <sys/resource.h>
 
@@ -15,13 +15,13 @@ double clock_seconds(clockid_t clock) {
 
 }  // namespace
 
-HostTimer::HostTimer()
+SimulatorTimer::SimulatorTimer()
     : cpu_start_(clock_seconds(CLOCK_PROCESS_CPUTIME_ID)), wall_start_(clock_seconds(CLOCK_MONOTONIC)) {}
 
-double HostTimer::cpu_seconds() const {
+double SimulatorTimer::cpu_seconds() const {
   return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_;
 }
-double HostTimer::wall_seconds() const {
+double SimulatorTimer::wall_seconds() const {
   return clock_seconds(CLOCK_MONOTONIC) - wall_start_;
 }
 

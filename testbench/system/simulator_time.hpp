@@ -5,9 +5,9 @@
 namespace testbench {
 
 /// Times this process.
-class HostTimer {
+class SimulatorTimer {
  public:
-  HostTimer();
+  SimulatorTimer();
   double cpu_seconds() const;
   double wall_seconds() const;
 

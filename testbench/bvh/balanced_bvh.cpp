@@ -21,7 +21,7 @@ class Builder {
   }
 
  private:
-  struct Range {  ///< of Bvh::triangles
+  struct Range {  ///< of indices into Bvh::triangles
     std::int32_t first;
     std::int32_t count;
   };
@@ -54,7 +54,7 @@ class Builder {
     return child;
   }
 
-  /// Into as many ranges as `ways`, or fewer that are leaves.
+  /// Splits a range into `ways` parts, or into fewer where parts are small enough to be leaves.
   void split(const Range& range, int ways, std::vector<Range>& parts) {
     if (ways == 1 || range.count <= max_leaf_triangles_) {
       parts.push_back(range);
@@ -67,7 +67,7 @@ class Builder {
     split({range.first + left, range.count - left}, ways - ways / 2, parts);
   }
 
-  /// The `left` lowest first.
+  /// Moves the `left` triangles with the lowest centres along the longest axis to the front of the range.
   void put_in_order(const Range& range, std::int32_t left) {
     const auto first = bvh_.triangles.begin() + range.first;
     Box centres;

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int kMaxLeafTriangles = path_tracer::PackedReference::kMaxCount;
 static_assert(kMaxLeafTriangles <= RTC_BUILD_MAX_PRIMITIVES_PER_LEAF);
-/// Embree splits by number 8 levels before the depth that it is given.
+/// Embree begins to split by number 8 levels before the depth that it is given.
 constexpr int kLeastMaxDepth = 16;
 
-/// A node as Embree's callbacks leave it, in Embree's own memory.
+/// A node that Embree's callbacks write, in memory that Embree allocates.
 struct Branch {
-  unsigned child_count;  ///< 0: a leaf
+  unsigned child_count;  ///< 0 for a leaf
   Branch* child[kMaxBvhWidth];
   std::uint32_t triangle_count;
   std::uint32_t triangle[kMaxLeafTriangles];
@@ -68,8 +68,8 @@ void check(const BvhOptions& options) {
           kLeastMaxDepth, 128);
 }
 
-/// Embree splits in single precision: boxes go there as parts of the scene's box, so that any scale will do.
-/// Rounding may put a triangle on the other side of a split, never out of the tree.
+/// The boxes for Embree, relative to the scene's box: Embree works in single precision, and so any scale of
+/// the scene serves. Rounding may move a triangle across a split but never out of the tree.
 std::vector<RTCBuildPrimitive> primitives_of(const std::vector<Box>& boxes) {
   Box scene;
   for (const Box& box : boxes) scene.include(box);
@@ -88,7 +88,7 @@ std::vector<RTCBuildPrimitive> primitives_of(const std::vector<Box>& boxes) {
   return primitives;
 }
 
-/// Copies Embree's tree, parents first, with exact boxes.
+/// Copies Embree's tree with exact boxes, parents first.
 class Copier {
  public:
   Copier(const std::vector<Box>& boxes, Bvh& bvh) : boxes_(boxes), bvh_(bvh) {}
@@ -98,7 +98,7 @@ class Copier {
       copy_node(root);
       return;
     }
-    bvh_.nodes.emplace_back();  // the only leaf
+    bvh_.nodes.emplace_back();  // a node whose only child is the leaf
     bvh_.nodes[0].child_count = 1;
     bvh_.nodes[0].child[0] = copy_leaf(root);
   }
@@ -139,13 +139,14 @@ class Copier {
   Bvh& bvh_;
 };
 
-/// No nodes when Embree gives up, as it does where triangles that lie in one place would go too deep.
+/// Returns a tree without nodes if Embree gives up because the tree would be too deep, as it does for many
+/// triangles in one place.
 Bvh build_by_area(const std::vector<Box>& boxes, const BvhOptions& options) {
   Bvh bvh;
   bvh.width = options.width;
   std::vector<RTCBuildPrimitive> primitives = primitives_of(boxes);
 
-  // One thread: the order in which several allocate and split is not the same every time.
+  // One thread, because several would allocate and split in an order that varies from run to run.
   const std::unique_ptr<RTCDeviceTy, ReleaseDevice> device(rtcNewDevice("threads=1,user_threads=1"));
   if (!device)
     throw RunError("BVH: Embree makes no device: error " + std::to_string(rtcGetDeviceError(nullptr)));
@@ -180,7 +181,7 @@ Bvh build_bvh(const std::vector<Triangle>& triangles, const BvhOptions& options)
 }
 
 int levels(const Bvh& bvh) {
-  std::vector<int> level(bvh.nodes.size(), 1);  // nodes stand before their children
+  std::vector<int> level(bvh.nodes.size(), 1);  // nodes precede their children
   int deepest = 0;
   for (std::size_t node = 0; node < bvh.nodes.size(); ++node) {
     deepest = std::max(deepest, level[node]);

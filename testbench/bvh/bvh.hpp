@@ -10,7 +10,7 @@
 
 namespace testbench {
 
-/// Closed and aligned to the axes; empty until something is put into it.
+/// A closed box aligned to the axes; empty until include() is called.
 struct Box {
   glm::dvec3 lower{std::numeric_limits<double>::infinity()};
   glm::dvec3 upper{-std::numeric_limits<double>::infinity()};
@@ -27,7 +27,7 @@ struct Box {
     return glm::all(glm::lessThanEqual(lower, box.lower)) &&
            glm::all(glm::greaterThanEqual(upper, box.upper));
   }
-  /// Half of the surface area; 0 when empty.
+  /// Half of the surface area; 0 for an empty box.
   double half_area() const;
 };
 
@@ -35,11 +35,11 @@ Box bounds_of(const Triangle& triangle);
 
 inline constexpr int kMaxBvhWidth = 8;
 
-/// One child of a node: another node, or a run of triangles.
+/// One child of a node: another node, or a leaf, which is a range of triangles.
 struct BvhChild {
-  Box box;                          ///< exact: the smallest around all that is below
+  Box box;                          ///< the smallest box around all triangles below
   std::int32_t node = -1;           ///< index into Bvh::nodes; -1 for a leaf
-  std::int32_t first_triangle = 0;  ///< of a leaf: index into Bvh::triangles
+  std::int32_t first_triangle = 0;  ///< only in a leaf: index into Bvh::triangles
   std::int32_t triangle_count = 0;
 
   bool is_leaf() const { return node < 0; }
@@ -49,15 +49,15 @@ struct BvhNode {
   int child_count = 0;
   std::array<BvhChild, kMaxBvhWidth> child;
 
-  Box box() const;  ///< around all that is below
+  Box box() const;  ///< the smallest box around all triangles below
 };
 
-/// A tree of boxes over a scene's triangles. Nodes stand before their children; nodes[0] is the root. Of no
-/// triangles: no nodes.
+/// A tree of boxes over a scene's triangles. Nodes precede their children; nodes[0] is the root. A tree of no
+/// triangles has no nodes.
 struct Bvh {
   int width = 2;
   std::vector<BvhNode> nodes;
-  std::vector<std::int32_t> triangles;  ///< indices into the scene's, leaf by leaf, each once
+  std::vector<std::int32_t> triangles;  ///< indices into the scene's triangles, leaf by leaf, each once
 };
 
 }  // namespace testbench

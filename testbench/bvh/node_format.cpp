@@ -16,8 +16,8 @@ using path_tracer::QuantisedFrame;
 constexpr int kAxes = 3;
 constexpr int kSteps = 255;
 constexpr int kExponentBias = 127;
-constexpr int kLeastExponent = 1;                      // with the bias, of a normal float
-constexpr int kLargestExponent = kExponentBias + 119;  // 255 steps are finite yet
+constexpr int kLeastExponent = 1;                      // biased exponent of the smallest normal float
+constexpr int kLargestExponent = kExponentBias + 119;  // the largest for which 255 steps are finite
 
 template <class T>
 void store(std::uint8_t* node, int offset, const T& value) {
@@ -43,12 +43,14 @@ double coordinate(const QuantisedFrame& frame, int axis, int step) {
   return double(path_tracer::quantised_coordinate(frame, axis, step));
 }
 
-/// The smallest power of two by which 255 steps reach from the lower end to the upper one.
+/// The frame of a node's quantised boxes: on each axis, the smallest power of two as a step with which 255
+/// steps span the box.
 QuantisedFrame frame_around(const Box& box) {
   QuantisedFrame frame{};
   for (int axis = 0; axis < kAxes; ++axis) {
     frame.origin[axis] = rounded_down(box.lower[axis]);
-    const double half_extent = 0.5 * box.upper[axis] - 0.5 * frame.origin[axis];  // the whole may overflow
+    const double half_extent =
+        0.5 * box.upper[axis] - 0.5 * frame.origin[axis];  // halved, as the full extent may overflow
     int exponent = kLeastExponent;
     if (half_extent > 0.0)
       exponent =
@@ -60,14 +62,14 @@ QuantisedFrame frame_around(const Box& box) {
   return frame;
 }
 
-/// The step to begin with.
+/// The step near `number` at which the searches below start.
 int step_near(const QuantisedFrame& frame, int axis, double number) {
   const double steps =
       std::ldexp(0.5 * number - 0.5 * double(frame.origin[axis]), 1 + kExponentBias - frame.exponent[axis]);
   return static_cast<int>(std::clamp(std::floor(steps), 0.0, double(kSteps)));
 }
 
-/// The last step that is not above, and the first that is not below, after the sum's rounding.
+/// The last step whose rounded coordinate is not above `number`, and the first whose is not below it.
 std::uint8_t step_below(const QuantisedFrame& frame, int axis, double number) {
   int step = step_near(frame, axis, number);
   while (step < kSteps && coordinate(frame, axis, step + 1) <= number) ++step;

@@ -11,7 +11,7 @@ namespace {
 struct Candidate {
   double half_area;
   std::int32_t node;
-  /// Largest first; of equals the one that stands first in the tree.
+  /// The largest comes first; among equals, the node that precedes the others in the tree.
   bool operator<(const Candidate& other) const {
     return half_area < other.half_area || (half_area == other.half_area && node > other.node);
   }
@@ -36,7 +36,7 @@ class Packer {
   }
 
  private:
-  /// The nodes of the piece that begins at `root`; what does not fit begins pieces of its own.
+  /// The nodes of the piece that begins at `root`. Children that do not fit become roots of further pieces.
   std::vector<std::int32_t> take_piece(std::int32_t root, int most_nodes) {
     std::vector<std::int32_t> piece;
     std::priority_queue<Candidate> candidates;
@@ -55,7 +55,8 @@ class Packer {
     return piece;
   }
 
-  /// Where there is room left, or into a new treelet; whichever then has more room stays open.
+  /// Puts a piece into the open treelet if it fits, else into a new treelet. The treelet with more room left
+  /// stays open.
   void place(const std::vector<std::int32_t>& piece) {
     const int size = static_cast<int>(piece.size());
     const int most = packed_.sizes.per_treelet;

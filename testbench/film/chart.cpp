@@ -12,7 +12,7 @@
 namespace testbench {
 namespace {
 
-/// As gnuplot reads it: nothing is special between single quotes but the quote.
+/// A text in gnuplot's single quotes, between which only the quote itself is special.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);

@@ -6,14 +6,14 @@
 
 namespace testbench {
 
-/// Points joined by lines.
+/// One curve: points joined by lines.
 struct ChartSeries {
   std::string label;
   std::vector<double> x;
   std::vector<double> y;
 };
 
-/// Both axes logarithmic; points that are not positive are left out.
+/// A chart with two logarithmic axes. Points that are not positive are left out.
 struct LogChart {
   std::string title;
   std::string x_label;
@@ -21,11 +21,11 @@ struct LogChart {
   std::vector<ChartSeries> series;
 };
 
-/// Whether gnuplot, which draws the charts, is installed.
+/// Whether gnuplot is installed, which draws the charts.
 bool can_draw_charts();
 
-/// Draws into a PNG or, by the name's ending, an SVG file. Atomic; throws InputError or RunError as
-/// write_atomically() does, RunError when gnuplot fails.
+/// Draws the chart into an SVG file if the name ends in ".svg", else into a PNG file. Atomic. Throws as
+/// write_atomically() does, and RunError if gnuplot fails.
 void write_chart(const std::filesystem::path& path, const LogChart& chart);
 
 }  // namespace testbench

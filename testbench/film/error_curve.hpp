@@ -8,36 +8,36 @@
 
 namespace testbench {
 
-/// How far an image is from the truth: means over channels of unmasked pixels.
+/// Error of an image against a reference: means over the channels of all pixels that count.
 struct ImageError {
-  double mse = 0;                   ///< of linear radiance
+  double mse = 0;                   ///< mean squared error of linear radiance
   double relative_mse = 0;          ///< squared difference / (squared reference + kRelativeOffset)
-  double mean_bias[3] = {0, 0, 0};  ///< of R, G and B: (mean of the image / mean of the reference) - 1
+  double mean_bias[3] = {0, 0, 0};  ///< for R, G and B: (mean of the image / mean of the reference) - 1
 
-  /// Keeps dark pixels from counting without bound (Rousselle, Knaus, Zwicker, SIGGRAPH Asia 2011).
+  /// Bounds the weight of dark pixels (Rousselle, Knaus, Zwicker, SIGGRAPH Asia 2011).
   static constexpr double kRelativeOffset = 1e-2;
 };
 
-/// Error of a film against a reference of the same size. The reference's samples are independent, so the
-/// variance that it holds is what its noise adds to the squared difference; that is subtracted. An error
-/// below the noise's own scatter may come out negative. `counts` says which pixels count, one entry a pixel;
-/// at least one must.
+/// Error of a film against a reference of the same size. The reference's samples are independent, so its
+/// noise adds its stored variance to the squared difference; that variance is subtracted. An error smaller
+/// than the scatter of this noise may come out negative. `counts` has one entry per pixel and says whether
+/// the pixel counts; at least one must.
 ImageError image_error(const Film& film, const ExrFilm& reference, const std::vector<bool>& counts);
 
-/// One line of an error curve.
+/// One point of an error curve.
 struct CurvePoint {
-  int samples = 0;  ///< a pixel
+  int samples = 0;  ///< per pixel
   ImageError error;
-  double native_cpu_seconds = 0;            ///< of rendering
-  std::optional<double> timed_cpu_seconds;  ///< with the chip's timing on
-  std::optional<double> simulated_seconds;  ///< on the chip
+  double native_cpu_seconds = 0;            ///< of a native render
+  std::optional<double> timed_cpu_seconds;  ///< of a render with the chip's timing
+  std::optional<double> simulated_seconds;  ///< time that the chip takes
 };
 
-/// Slope of log y over log x by least squares over the points where both are positive; NaN with fewer than
+/// Slope of log y over log x by least squares, over the points where both are positive; NaN with fewer than
 /// two different x.
 double log_log_slope(const std::vector<double>& x, const std::vector<double>& y);
 
-/// MSE times seconds: the lower, the less time an image of a given error takes.
+/// MSE times seconds. The lower it is, the less time an image of a given error takes.
 inline double cost_of_error(const ImageError& error, double seconds) {
   return error.mse * seconds;
 }

@@ -19,10 +19,10 @@ constexpr int kLargestSampleExponent = 20;  ///< a sample may be 2^this times th
 constexpr int kSumFractionBits = 74;
 constexpr int kSquareFractionBits = 54;
 
-// Not in ISO C++17: the 113-bit mantissa keeps a small variance under a large mean from cancelling away.
+// Not in ISO C++17. Its 113-bit mantissa keeps a small variance beside a large mean from being cancelled.
 __extension__ typedef __float128 Float128;  // NOLINT(modernize-use-using)
 
-/// The exponent e of scale = 2^e, or std::invalid_argument.
+/// The exponent e of scale = 2^e. Throws std::invalid_argument for any other scale.
 int exponent_of(double scale) {
   int exponent = 0;
   const double mantissa = std::frexp(scale, &exponent);
@@ -62,7 +62,7 @@ Film::UInt128 Film::to_fixed_point(double value, double units) {
   const double scaled = value * units;
   const auto high = static_cast<std::int64_t>(scaled);
   const auto low = static_cast<std::int64_t>((scaled - static_cast<double>(high)) * 0x1p63);
-  // By way of 64 unsigned bits: neither half is negative, and this spares the sign extension.
+  // Converts by way of 64 unsigned bits: neither half is negative, so sign extension is not needed.
   return (UInt128{static_cast<std::uint64_t>(high)} << 63) + static_cast<std::uint64_t>(low);
 }
 
@@ -151,7 +151,7 @@ glm::dvec3 Film::variance_of_mean(int pixel_index) const {
   const Pixel& pixel = at(pixel_index);
   if (pixel.samples < 2) return glm::dvec3(0.0);
   const auto samples = static_cast<Float128>(pixel.samples);
-  // Brings the squared sum to the quantum of the sum of squares.
+  // Shifts the squared sum to the unit of the sum of squares.
   const int shift = 2 * sum_quantum_exponent_ - square_quantum_exponent_;
   const auto sum_to_square_quanta = static_cast<Float128>(std::ldexp(1.0, shift));
   glm::dvec3 result;
@@ -160,8 +160,8 @@ glm::dvec3 Film::variance_of_mean(int pixel_index) const {
     const auto squares = static_cast<Float128>(pixel.sum_of_squares[channel]);
     const Float128 deviation = squares - sum * sum * sum_to_square_quanta / samples;
     const Float128 variance = deviation / (samples - 1) / samples;
-    result[channel] =
-        std::max(0.0, from_float128(variance, square_quantum_exponent_));  // bits cut off: maybe below 0
+    result[channel] = std::max(
+        0.0, from_float128(variance, square_quantum_exponent_));  // truncated bits may make it negative
   }
   return result;
 }

@@ -10,7 +10,7 @@
 
 namespace testbench {
 
-/// Samples a film refused, by cause (the first that applies, in this order).
+/// Number of samples that a film refused, by cause (the first that applies, in this order).
 struct RejectedSamples {
   std::uint64_t not_finite = 0;
   std::uint64_t negative = 0;
@@ -18,9 +18,8 @@ struct RejectedSamples {
       0;  ///< a channel above Film::max_radiance(), or a pixel already holds Film::kMaxSamples
 };
 
-/// Sums radiance samples such that the result does not depend on their order, nor on how they were split over
-/// films that are merged later: every sum is exact integer arithmetic. Pixels count row by row from the top
-/// left.
+/// Sums radiance samples in exact integer arithmetic, so the result depends neither on their order nor on how
+/// they were distributed over films that are merged later. Pixels are numbered row by row from the top left.
 ///
 /// Number format: a channel's sum is a multiple of scale * 2^-74, its sum of squares a multiple of scale^2 *
 /// 2^-54; a sample's bits below that are cut off. Both hold 2^32 samples of 2^20 * scale (126 bits) without
@@ -38,8 +37,9 @@ class Film {
   /// (std::out_of_range).
   bool add(int pixel, const glm::dvec3& radiance);
 
-  /// Begins to fetch what add() needs. A film is larger than the host's caches and paths end in no order, so
-  /// samples are announced some ahead (add() and this: 4 % of a render; add() alone without it: 6.5 %).
+  /// Prefetches the pixel for add(). A film is larger than the caches of the x86, and paths end in no order
+  /// of pixels, so callers announce samples in advance. With prefetch(), both functions take 4 % of a render;
+  /// without it, add() alone takes 6.5 %.
   void prefetch(int pixel) const {
     const char* const address = reinterpret_cast<const char*>(pixels_.data() + pixel);
     __builtin_prefetch(address, 1);
@@ -50,7 +50,7 @@ class Film {
   /// std::overflow_error, with this film unchanged, if a pixel would hold more than kMaxSamples.
   void merge(const Film& other);
 
-  /// All samples, for from_bytes() of the same build: how a film gets from one process to another.
+  /// All samples as bytes that from_bytes() of the same build reads, to send a film to another process.
   std::string bytes() const;
   /// Throws std::invalid_argument when `bytes` are not those of a film of this size.
   static Film from_bytes(FilmSize size, double scale, const std::string& bytes);
@@ -91,16 +91,16 @@ class Film {
   FilmSize size_;
   double scale_;
   double max_radiance_;
-  int sum_quantum_exponent_;     ///< a unit of Pixel::sum is 2^this
-  int square_quantum_exponent_;  ///< a unit of Pixel::sum_of_squares is 2^this
-  double sum_units_;             ///< 2^-63 / unit of Pixel::sum
-  double square_units_;          ///< 2^-63 / unit of Pixel::sum_of_squares
+  int sum_quantum_exponent_;     ///< the unit of Pixel::sum is 2^this
+  int square_quantum_exponent_;  ///< the unit of Pixel::sum_of_squares is 2^this
+  double sum_units_;             ///< 2^-63 / (unit of Pixel::sum)
+  double square_units_;          ///< 2^-63 / (unit of Pixel::sum_of_squares)
   std::vector<Pixel> pixels_;
   RejectedSamples rejected_;
 };
 
-/// The scale a film of this scene needs: the power of two at or above its largest emission, within 2^-40 ..
-/// 2^40.
+/// The scale for a film of this scene: the smallest power of two not below its largest emission, within 2^-40
+/// .. 2^40.
 double film_scale(const Scene& scene);
 
 }  // namespace testbench

@@ -25,7 +25,7 @@ constexpr const char* kMeanChannels[3] = {"R", "G", "B"};
 constexpr const char* kVarianceChannels[3] = {"variance.R", "variance.G", "variance.B"};
 constexpr const char* kSamplesChannel = "samples";
 
-/// What the EXR channels hold, interleaved as the frame buffer wants it.
+/// One pixel of the EXR channels, interleaved for the frame buffer.
 struct ExrPixel {
   float mean[3];
   float variance[3];
@@ -65,7 +65,7 @@ Imf::Header exr_header(const Film& film, const std::map<std::string, std::string
   return header;
 }
 
-/// OpenEXR addresses a slice by the pixel (0, 0) and byte strides.
+/// A slice that OpenEXR addresses by the pixel (0, 0) and byte strides.
 template <class Element>
 Imf::Slice slice(Imf::PixelType type, Element* first, std::size_t pixel_bytes, int width) {
   return Imf::Slice(type, reinterpret_cast<char*>(first), pixel_bytes,
@@ -86,8 +86,8 @@ std::string encode_exr(const Film& film, const Imf::Header& header) {
 
   Imf::StdOSStream stream;
   {
-    // Its destructor writes the line table, and hides errors: hence memory, and a checked write of the whole
-    // afterwards.
+    // OutputFile's destructor writes the line table and hides errors, so it writes to memory; the whole file
+    // is written afterwards, with checks.
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(buffer);
     file.writePixels(film.size().height);
@@ -131,7 +131,7 @@ void write_png(const std::filesystem::path& path, const Film& film) {
 
 namespace {
 
-/// Three float channels of an open file, interleaved.
+/// Reads three float channels of an open file, interleaved.
 std::vector<float> read_channels(Imf::InputFile& file, const char* const (&names)[3],
                                  const std::filesystem::path& path) {
   const Imath::Box2i window = file.header().dataWindow();
@@ -152,7 +152,7 @@ std::vector<float> read_channels(Imf::InputFile& file, const char* const (&names
   return values;
 }
 
-/// Calls `read` with the open file and names the file in whatever goes wrong.
+/// Calls `read` with the open file. Errors become InputError that name the file.
 template <class Read>
 auto read_exr(const std::filesystem::path& path, Read&& read) {
   try {

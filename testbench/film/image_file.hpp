@@ -23,26 +23,28 @@ void write_png(const std::filesystem::path& path, const Film& film);
 /// The 8-bit sRGB code of a linear value, as write_png() stores it.
 int srgb_code(double linear);
 
-/// R, G, B of each pixel, row by row, the top row first.
+/// R, G and B of each pixel, row by row, the top row first.
 struct ExrImage {
   int width = 0;
   int height = 0;
   std::vector<float> rgb;
 };
 
-/// Reads channels R, G, B of an OpenEXR file. Throws InputError if it cannot be read or a channel is missing.
+/// Reads channels R, G and B of an OpenEXR file. Throws InputError if it cannot be read or a channel is
+/// missing.
 ExrImage read_exr_rgb(const std::filesystem::path& path);
 
-/// What write_exr() wrote.
+/// The content of a file of write_exr().
 struct ExrFilm {
   int width = 0;
   int height = 0;
   std::vector<float> rgb;       ///< mean radiance
-  std::vector<float> variance;  ///< of the mean, in the order of `rgb`
+  std::vector<float> variance;  ///< variance of the mean, in the order of `rgb`
   std::map<std::string, std::string> attributes;
 };
 
-/// Reads back mean, variance and string attributes. Throws InputError as read_exr_rgb() does.
+/// Reads mean, variance and string attributes of a file of write_exr(). Throws InputError as read_exr_rgb()
+/// does.
 ExrFilm read_exr_film(const std::filesystem::path& path);
 
 }  // namespace testbench

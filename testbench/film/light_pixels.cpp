@@ -9,17 +9,17 @@
 namespace testbench {
 namespace {
 
-/// Film coordinates in pixels.
+/// A polygon in film coordinates, in pixels.
 using FilmPolygon = std::vector<glm::dvec2>;
 
-/// Camera coordinates: right, down, depth along the viewing direction.
+/// A point in camera coordinates: right, down, depth along the viewing direction.
 glm::dvec3 to_camera(const Camera& camera, const glm::dvec3& point) {
   const glm::dvec3 from = point - camera.position;
   return {glm::dot(from, glm::cross(camera.direction, camera.up)), -glm::dot(from, camera.up),
           glm::dot(from, camera.direction)};
 }
 
-/// The part of a triangle in front of the camera, projected (clipped after Sutherland and Hodgman 1974).
+/// Projects the part of a triangle in front of the camera (clipped after Sutherland and Hodgman 1974).
 FilmPolygon project(const Triangle& triangle, const Camera& camera, const FilmSize& film) {
   glm::dvec3 corner[3];
   double farthest = 0;
@@ -44,7 +44,8 @@ FilmPolygon project(const Triangle& triangle, const Camera& camera, const FilmSi
   return polygon;
 }
 
-/// Separating axes of a convex polygon and the unit square at (x, y); touching is not overlapping.
+/// Whether a convex polygon and the unit square at (x, y) overlap, by separating axes. Touching is not
+/// overlapping.
 bool overlaps(const FilmPolygon& polygon, double x, double y) {
   const auto separated_along = [&](const glm::dvec2& axis) {
     double polygon_low = glm::dot(polygon[0], axis), polygon_high = polygon_low;

@@ -6,9 +6,9 @@
 
 namespace testbench {
 
-/// One entry a pixel, row by row from the top: whether the front of an emitting triangle lies in it, wholly
-/// or in part, were nothing in front. Such pixels are left out of error measures: their error is that of the
-/// light's edge, or none.
+/// One entry per pixel, row by row from the top: whether the front of an emitting triangle projects to a part
+/// of the pixel, occluded or not. Measures of error leave these pixels out, because their error is only that
+/// of the light's edge.
 std::vector<bool> light_pixels(const Scene& scene);
 
 }  // namespace testbench

@@ -11,11 +11,11 @@
 namespace testbench {
 namespace {
 
-/// A vertex, to be looked up by its exact coordinates.
+/// A vertex as a key for look-up by its exact coordinates.
 struct Point {
   std::array<double, 3> coordinate;
 
-  explicit Point(const glm::dvec3& p) : coordinate{p.x + 0.0, p.y + 0.0, p.z + 0.0} {}  // 0 for -0, too
+  explicit Point(const glm::dvec3& p) : coordinate{p.x + 0.0, p.y + 0.0, p.z + 0.0} {}  // turns -0 into 0
   bool operator==(const Point& other) const { return coordinate == other.coordinate; }
 };
 
@@ -32,7 +32,7 @@ struct HashOfPoint {
   }
 };
 
-/// Which triangles have which edge. Each edge of each triangle belongs to the group of those that are alike.
+/// The triangles at each edge. Edges of triangles that have the same two vertices form a group.
 class Edges {
  public:
   explicit Edges(const std::vector<Triangle>& triangles) : group_(3 * triangles.size()) {
@@ -70,13 +70,12 @@ class Edges {
 
  private:
   struct Use {
-    std::uint64_t vertices;  ///< the numbers of both, the lower one above
+    std::uint64_t vertices;  ///< numbers of both vertices, the lower number in the upper 32 bits
     std::size_t place;       ///< 3 * triangle + edge
   };
 
-  /// By vertices, then by place, which is the order that they come in. By counting for the lower vertex,
-  /// which has few edges. To sort all of them at once was 0.3 of the 3.4 s that a million triangles take to
-  /// load.
+  /// Sorts by vertices, then by place: first a counting sort by the lower vertex, then a sort of the few
+  /// edges of each vertex. Sorting all at once took 0.3 of the 3.4 s in which a million triangles are loaded.
   static std::vector<Use> in_order(const std::vector<Use>& uses, std::size_t vertices) {
     std::vector<std::size_t> end(vertices + 1);
     for (const Use& use : uses) ++end[(use.vertices >> 32) + 1];
@@ -99,8 +98,8 @@ class Edges {
   std::vector<std::size_t> group_;
 };
 
-/// Within rounding of the plane through `triangle`, whose unit normal is given: 2^-40 of the distances
-/// involved.
+/// Whether `other` lies in the plane of `triangle`, whose unit normal is given, with a tolerance for rounding
+/// of 2^-40 of the distances involved.
 bool lies_in_plane(const Triangle& triangle, const glm::dvec3& normal, const Triangle& other) {
   constexpr double kTolerance = 0x1p-40;
   return std::all_of(std::begin(other.vertex), std::end(other.vertex), [&](const glm::dvec3& vertex) {

@@ -7,10 +7,10 @@
 
 namespace testbench {
 
-/// A number for each triangle; triangles that touch along an edge in one plane share it.
+/// The face number of each triangle. Triangles that share an edge and lie in one plane have the same number.
 std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles);
 
-/// Twice the area times the unit normal.
+/// The unit normal times twice the area.
 glm::dvec3 area_normal(const Triangle& triangle);
 
 }  // namespace testbench

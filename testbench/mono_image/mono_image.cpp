@@ -46,7 +46,7 @@ TriangleRecord triangle_record(const Triangle& triangle, const path_tracer::Tria
                                       to_record(triangle.vertex[2] - triangle.vertex[0]), place);
 }
 
-/// Around what the firmware takes a triangle for.
+/// The box in which the firmware may find hits of the triangle (padded_box(), triangle_record.hpp).
 Box padded_box(const Triangle& triangle, double reach) {
   const path_tracer::PaddedBox<double> box = path_tracer::padded_box(
       to_record(triangle.vertex[0]), to_record(triangle.vertex[1] - triangle.vertex[0]),
@@ -54,12 +54,12 @@ Box padded_box(const Triangle& triangle, double reach) {
   return {{box.lower.x, box.lower.y, box.lower.z}, {box.upper.x, box.upper.y, box.upper.z}};
 }
 
-/// From anywhere to anywhere: rays start at the camera or on triangles.
+/// A bound for the distance between any two points of camera and triangles, where all rays start.
 double reach_of(const Scene& scene) {
   Box all;
   all.include(scene.camera.position);
   for (const Triangle& triangle : scene.triangles) all.include(bounds_of(triangle));
-  constexpr double kRoom = 1.125;  // paddings and rounding
+  constexpr double kRoom = 1.125;  // for paddings and rounding
   return kRoom * glm::length(all.upper - all.lower);
 }
 
@@ -92,21 +92,21 @@ double area(const Emitter& emitter) {
   return emitter.shape == LightShape::triangle ? 0.5 * parallelogram : parallelogram;
 }
 
-/// What a light sends out in all, up to a common factor; lights are chosen in proportion to it.
+/// The radiant power of a light, up to a common factor. Lights are chosen in proportion to it.
 double power(const Emitter& emitter, const Scene& scene) {
   const glm::dvec3& emission = scene.materials[std::size_t(emitter.material)].emission;
   return area(emitter) * (emission.x + emission.y + emission.z);
 }
 
-/// The rectangle that two triangles of one face and material make, if they do: within rounding of a right
-/// angle, 2^-40.
+/// The rectangle that two triangles of one face and material form; std::nullopt if they form none. The
+/// tolerance for rounding is 2^-40.
 std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
   constexpr double kTolerance = 0x1p-40;
   if (a.face != b.face || a.material != b.material) return {};
   const glm::dvec3 corners_a[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
   const glm::dvec3 corners_b[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
   for (int i = 0; i < 3; ++i) {
-    // The right angle at a corner of one, its opposite at a corner of the other.
+    // The right angle lies at a corner of `a`, the opposite corner is one of `b`.
     Emitter joined = a;
     joined.vertex = corners_a[i];
     joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
@@ -141,7 +141,7 @@ std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::in
   return emitters;
 }
 
-/// Puts rectangles in the place of their halves, where the scene lists one after the other.
+/// Replaces two triangles that follow each other by the rectangle that they form.
 std::vector<Emitter> join_rectangles(const std::vector<Emitter>& triangles) {
   std::vector<Emitter> emitters;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -197,7 +197,8 @@ TreeImage make_tree(const Scene& scene, double reach, const path_tracer::Program
   return make_tree_image(boxes, config.tree);
 }
 
-/// Which of the scene's triangles lie where: leaf by leaf, or as they come.
+/// The indices of the scene's triangles in the order of mono memory: leaf by leaf with a tree, else as in the
+/// scene.
 std::vector<std::size_t> triangles_in_order(const Scene& scene, const TreeImage& tree,
                                             const path_tracer::ProgramConfig& config) {
   std::vector<std::size_t> order(scene.triangles.size());
@@ -217,10 +218,10 @@ void put_triangle(MonoImage& image, const Scene& scene, const std::vector<std::i
   put(image, image.layout.triangles + place, &record, 1);
 }
 
-/// Behind the triangles: for each light all triangles of its face, so that a shadow ray that hits one of them
-/// may stop at anything nearer. A face of more triangles gets records that nothing hits: its shadow rays miss
-/// their light at first and look for the nearest hit as segments do, since any of the others may be nearer
-/// yet.
+/// Writes, behind the triangles, a run of records for each light: all triangles of the light's face. A shadow
+/// ray that hits one of them can stop at any nearer hit. If a face has too many triangles, its run holds
+/// records that no ray hits. Shadow rays to that light then seem to miss it and search for the nearest hit as
+/// segments do.
 void put_light_runs(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
                     const Lights& lights) {
   std::unordered_map<std::int32_t, std::vector<std::size_t>> of_face;
@@ -234,11 +235,11 @@ void put_light_runs(MonoImage& image, const Scene& scene, const std::vector<std:
     const std::vector<std::size_t>& triangles = of_face[light.face];
     const std::size_t in_run = triangles.size() <= path_tracer::kLightRun ? triangles.size() : 0;
     for (std::size_t i = 0; i < path_tracer::kLightRun; ++i, ++place) {
-      const TriangleRecord nothing;
+      const TriangleRecord no_triangle;
       if (i < in_run) {
         put_triangle(image, scene, faces, triangles[i], place);
       } else {
-        put(image, image.layout.triangles + place, &nothing, 1);
+        put(image, image.layout.triangles + place, &no_triangle, 1);
       }
     }
   }

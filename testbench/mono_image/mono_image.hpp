@@ -8,13 +8,13 @@
 
 namespace testbench {
 
-/// What the host writes to mono memory before a run, from address 0.
+/// The content of mono memory that the host uploads before a run, from address 0.
 struct MonoImage {
   path_tracer::Layout layout;
-  std::vector<std::uint8_t> bytes;  ///< layout.scene_bytes of them
+  std::vector<std::uint8_t> bytes;  ///< layout.scene_bytes bytes
 };
 
-/// Lays a scene out for the firmware. Throws InputError for a scene without light.
+/// Lays out a scene for the firmware. Throws InputError for a scene without light.
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config);
 
 }  // namespace testbench

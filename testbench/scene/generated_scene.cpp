@@ -13,7 +13,7 @@ namespace {
 
 enum RoomMaterial : std::int32_t { kWhite, kRed, kGreen, kLight, kObject };
 
-constexpr double kRoom = 556.0;  // the size of Cornell's box, in its millimetres
+constexpr double kRoom = 556.0;  // edge of the Cornell box, in millimetres
 const glm::dvec3 kCentre{0.5 * kRoom, 0.5 * kRoom, 0.5 * kRoom};
 
 std::vector<Material> materials() {
@@ -30,7 +30,8 @@ void add_quad(Scene& scene, const glm::dvec3& corner, const glm::dvec3& edge1, c
   scene.triangles.push_back({{corner, corner + edge1 + edge2, corner + edge2}, material});
 }
 
-/// Floor, ceiling, back, sides and a light just below the ceiling; fronts look inwards, the front is open.
+/// Adds floor, ceiling, back and sides that face inwards, and a light just below the ceiling. The side
+/// towards the camera is open.
 void add_room(Scene& scene) {
   const glm::dvec3 x{kRoom, 0, 0};
   const glm::dvec3 y{0, kRoom, 0};
@@ -48,19 +49,20 @@ void add_room(Scene& scene) {
 Scene room() {
   Scene scene;
   scene.materials = materials();
-  scene.film = {480, 480};
+  scene.film = {kDefaultFilmSide, kDefaultFilmSide};
   scene.camera.position = {0.5 * kRoom, 0.5 * kRoom, -800.0};
   scene.camera.vertical_field_of_view_radians = 2.0 * std::atan2(0.0125, 0.035);
   add_room(scene);
   return scene;
 }
 
-/// A ball as a cube of cells * cells squares a face, blown up to radius(direction).
+/// Adds a ball: a cube with cells * cells squares on each face, whose points are moved to radius(direction)
+/// from the centre.
 template <class Radius>
 void add_ball(Scene& scene, const glm::dvec3& centre, int cells, const Radius& radius) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) {
-      const auto across = [cells](int i) {  // to equal angles; exactly 1 where faces meet
+      const auto across = [cells](int i) {  // steps of equal angle; exactly +-1 where faces meet
         return i == 0       ? -1.0
                : i == cells ? 1.0
                             : std::tan(glm::quarter_pi<double>() * (2.0 * i / cells - 1.0));
@@ -82,13 +84,13 @@ void add_ball(Scene& scene, const glm::dvec3& centre, int cells, const Radius& r
     }
 }
 
-constexpr int kTrianglesACell = 12;  // two for each of six faces
+constexpr int kTrianglesACell = 12;  // two on each of six faces
 
 int cells_for(double triangles) {
   return std::max(1, static_cast<int>(std::lround(std::sqrt(triangles / kTrianglesACell))));
 }
 
-/// Dents and bumps of three sizes.
+/// Adds a ball with dents and bumps of three sizes.
 void add_blob(Scene& scene, const glm::dvec3& centre, double radius, double triangles) {
   add_ball(scene, centre, cells_for(triangles), [radius](const glm::dvec3& d) {
     return radius * (0.8 + 0.12 * std::sin(3.0 * d.x + 1.0) * std::cos(4.0 * d.y) +
@@ -103,7 +105,7 @@ struct Ball {
   glm::dvec3 up;
 };
 
-/// Six balls round the waist of each and three on its upper half, a third of its size.
+/// The balls that sit on `ball`: six around its waist and three on its upper half, a third of its size.
 std::vector<Ball> balls_on(const Ball& ball) {
   const glm::dvec3 other = std::abs(ball.up.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 side = glm::normalize(glm::cross(ball.up, other));
@@ -135,7 +137,8 @@ void add_sphere_flake(Scene& scene, double triangles) {
     add_ball(scene, ball.centre, cells, [&](const glm::dvec3&) { return ball.radius; });
 }
 
-/// Numbers in [0, 1) that are the same on every machine, as the library's distributions need not be.
+/// A random number in [0, 1), the same on every machine, which the standard library's distributions do not
+/// guarantee.
 double uniform(std::mt19937_64& random) {
   return double(random() >> 11) * 0x1p-53;
 }
@@ -151,7 +154,7 @@ void add_needles(Scene& scene, int triangles) {
   }
 }
 
-/// Rows of seats round a lawn, `sides` a row; the room's place taken by a stadium of the given radius.
+/// Adds rows of seats around the lawn of a stadium of the given radius, `sides` seats per row.
 void add_stands(Scene& scene, double radius, int sides, int rows) {
   const auto point = [&](int side, double row, double height) {
     const double angle = side * glm::two_pi<double>() / sides;
@@ -166,8 +169,8 @@ void add_stands(Scene& scene, double radius, int sides, int rows) {
   };
   for (int side = 0; side < sides; ++side)
     for (int row = 0; row < rows; ++row) {
-      add_strip(side, row, 0.4 * row, row + 1, 0.4 * row);            // where feet are
-      add_strip(side, row + 1, 0.4 * row, row + 1, 0.4 * (row + 1));  // the next row's front
+      add_strip(side, row, 0.4 * row, row + 1, 0.4 * row);            // the floor in front of the seats
+      add_strip(side, row + 1, 0.4 * row, row + 1, 0.4 * (row + 1));  // the front of the next row
     }
 }
 
@@ -177,11 +180,12 @@ Scene stadium(int triangles) {
   constexpr int kRows = 12;
   Scene scene;
   scene.materials = materials();
-  scene.film = {480, 480};
+  scene.film = {kDefaultFilmSide, kDefaultFilmSide};
   scene.camera.position = {0.0, 1.5 * kBlobRadius, -4.0 * kBlobRadius};
   scene.camera.vertical_field_of_view_radians = glm::radians(40.0);
   add_quad(scene, {-kRadius, 0, -kRadius}, {0, 0, 2 * kRadius}, {2 * kRadius, 0, 0}, kGreen);
-  scene.materials[kLight].emission = {1.7, 1.6, 1.4};  // so large a lamp need not be bright
+  scene.materials[kLight].emission = {1.7, 1.6,
+                                      1.4};  // less than a room's light, because the lamp is so large
   const double lamp = 0.4 * kRadius;
   add_quad(scene, {-lamp, 0.8 * kRadius, -lamp}, {2 * lamp, 0, 0}, {0, 0, 2 * lamp}, kLight);
   const int sides = std::max(8, triangles / 4 / (4 * kRows));

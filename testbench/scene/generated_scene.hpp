@@ -7,13 +7,13 @@
 
 namespace testbench {
 
-/// Scenes of any number of triangles, to see what a tree of boxes and the chip make of them.
+/// Scenes with any number of triangles, to measure how the chip and trees of boxes cope with size and shape.
 enum class GeneratedScene : std::uint8_t {
-  blob,          ///< a dented ball, finely tessellated, in a box like Cornell's
-  sphere_flake,  ///< balls on balls on balls in that box (Haines, "A Proposal for Standard Graphics
+  blob,          ///< a dented ball, finely tessellated, in a Cornell box
+  sphere_flake,  ///< balls on balls on balls in a Cornell box (Haines, "A Proposal for Standard Graphics
                  ///< Environments", IEEE CG&A 7(11), 1987)
-  stadium,       ///< the blob, 10^5 times smaller than the stadium that it lies in
-  needles,       ///< triangles a thousand times longer than wide, all through that box
+  stadium,       ///< the blob in a stadium 10^5 times larger than it
+  needles,       ///< triangles a thousand times longer than wide, all through a Cornell box
 };
 
 inline constexpr GeneratedScene kGeneratedScenes[] = {GeneratedScene::blob, GeneratedScene::sphere_flake,
@@ -23,9 +23,9 @@ std::string name_of(GeneratedScene scene);
 inline constexpr int kLeastGeneratedTriangles = 100;
 inline constexpr int kMostGeneratedTriangles = 10000000;
 
-/// About `triangles` of them, the room included: as near as whole patches come. The same number gives the
-/// same scene on every machine.
-/// @throws InputError for a number out of range
+/// Returns a scene of about `triangles` triangles, including the room's; the number is not exact because
+/// surfaces are made of whole patches. The same arguments give the same scene on every machine.
+/// @throws InputError if `triangles` is out of range
 Scene generate_scene(GeneratedScene kind, int triangles);
 
 }  // namespace testbench

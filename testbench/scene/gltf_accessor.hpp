@@ -11,17 +11,17 @@ class Model;
 
 namespace testbench {
 
-/// The elements of one accessor of a glTF file, every access within its buffer. Throws InputError, which
-/// names `where` in the file, for an accessor that reaches beyond its buffer, is sparse, or has another type
-/// than it is asked for.
+/// Reads the elements of one accessor of a glTF file; every access is checked to lie within its buffer.
+/// Throws InputError, which names `where` in the file, for an accessor that reaches beyond its buffer, is
+/// sparse, or has another type than the one asked for.
 class GltfAccessor {
  public:
   GltfAccessor(const std::filesystem::path& file, const tinygltf::Model& model, int index, std::string where);
 
   std::size_t size() const { return size_; }
-  /// Three floats.
+  /// An element of three floats.
   glm::dvec3 point(std::size_t element) const;
-  /// An unsigned integer below `limit`.
+  /// An element that is an unsigned integer below `limit`.
   std::size_t index(std::size_t element, std::size_t limit) const;
 
  private:

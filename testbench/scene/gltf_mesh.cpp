@@ -24,7 +24,7 @@ constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
                    "; allowed: " + allowed);
 }
 
-/// Images are not decoded: textures are refused where a material names one.
+/// Image loader that decodes nothing: material_of() refuses materials with textures.
 bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
                  void*) {
   return true;
@@ -43,7 +43,7 @@ tinygltf::Model parse_gltf(const std::filesystem::path& file) {
   try {
     parsed = file.extension() == ".glb" ? parser.LoadBinaryFromFile(&model, &error, &warning, file.string())
                                         : parser.LoadASCIIFromFile(&model, &error, &warning, file.string());
-  } catch (const std::exception& thrown) {  // of the JSON parser below it
+  } catch (const std::exception& thrown) {  // thrown by TinyGLTF's JSON parser
     error = thrown.what();
   }
   if (!parsed)
@@ -95,8 +95,8 @@ glm::dmat4 transform_of(const tinygltf::Node& node) {
   return transform;
 }
 
-/// Corners of a primitive's triangles, in the order of its mode.
-template <class Visitor>  // (a, b, c): places in the list of vertices
+/// Visits the corners of each triangle of a primitive, in the order that its mode defines.
+template <class Visitor>  // (a, b, c): indices into the list of vertices
 void for_each_triangle(int mode, std::size_t vertices, const Visitor& visit) {
   const auto last = [](std::size_t count, std::size_t step) { return count < step ? 0 : count - step + 1; };
   if (mode == TINYGLTF_MODE_TRIANGLES || mode < 0)
@@ -107,7 +107,7 @@ void for_each_triangle(int mode, std::size_t vertices, const Visitor& visit) {
     for (std::size_t i = 1; i < last(vertices, 2); ++i) visit(i, i + 1, std::size_t{0});
 }
 
-/// Walks the nodes and collects what they hold.
+/// Walks the nodes and collects their triangles, materials and camera.
 class Collector {
  public:
   Collector(const std::filesystem::path& file, const tinygltf::Model& model, GltfFile& result)
@@ -150,8 +150,7 @@ class Collector {
                    size == 0 ? "none, the file holds no " + what : "0 to " + std::to_string(size - 1));
   }
 
-  /// Deep chains of nodes are walked with a stack of our own: a file may hold more than the machine's has
-  /// room for.
+  /// Uses an explicit stack of nodes, because a file may chain more nodes than recursion has room for.
   void add_node(int root, const glm::dmat4& of_root) {
     std::vector<std::pair<int, glm::dmat4>> open{{root, of_root}};
     while (!open.empty()) {
@@ -189,7 +188,7 @@ class Collector {
     if (primitive.indices >= 0) indices.emplace(file_, model_, primitive.indices, where + ", indices");
     const auto material = static_cast<std::int32_t>(primitive.material >= 0 ? std::size_t(primitive.material)
                                                                             : materials_.size() - 1);
-    // A mirror turns triangles inside out.
+    // A transform that mirrors reverses the winding of triangles.
     const bool is_mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
     const auto vertex = [&](std::size_t place) {
       const std::size_t index = indices ? indices->index(place, vertices.size()) : place;

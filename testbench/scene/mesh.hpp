@@ -7,25 +7,28 @@
 
 namespace testbench {
 
-/// The triangles of one file. `materials` holds only the materials its triangles use, in the file's order.
+/// The triangles of one file. `materials` holds only the materials that its triangles use, in the file's
+/// order.
 struct Mesh {
   std::vector<Material> materials;
   std::vector<Triangle> triangles;
-  std::size_t degenerate_triangles = 0;  ///< dropped for having no area; see is_degenerate()
+  std::size_t degenerate_triangles =
+      0;  ///< number of triangles dropped because they have no area; see is_degenerate()
 };
 
-/// The largest |coordinate| a mesh may hold: its cube is still a finite double.
+/// The largest |coordinate| that a mesh may have: its cube is still a finite double.
 inline constexpr double kMaxCoordinate = 1e100;
-/// The largest radiance a material may emit: what a Film can hold.
+/// The largest radiance that a material may emit: the largest that a Film can hold.
 inline constexpr double kMaxEmission = 1e12;
 
-/// True for a triangle with no area to double precision: its height is less than 1e-12 of its longest edge.
+/// Whether a triangle has no area in double precision: its height is less than 1e-12 of its longest edge.
 bool is_degenerate(const Triangle& triangle);
 
-/// Whether all coordinates are numbers of at most kMaxCoordinate.
+/// Whether all coordinates are numbers whose absolute value is at most kMaxCoordinate.
 bool is_in_range(const Triangle& triangle);
 
-/// Gives `mesh`, whose triangles index into `all`, the materials that they use.
+/// Sets the materials of `mesh` to those of `all` that its triangles use, and renumbers the triangles'
+/// indices into `all` accordingly.
 void keep_used_materials(const std::vector<Material>& all, Mesh& mesh);
 
 }  // namespace testbench

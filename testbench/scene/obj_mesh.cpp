@@ -29,8 +29,8 @@ std::string read_text(const std::filesystem::path& file, const std::string& name
   return std::move(text).str();
 }
 
-/// Hands MTL files to tinyobjloader (which maps names to indices) and keeps their checked colours in the same
-/// order.
+/// Passes MTL files to tinyobjloader, which maps names to indices, and keeps their checked colours in the
+/// same order.
 class CheckedMaterialReader : public tinyobj::MaterialReader {
  public:
   explicit CheckedMaterialReader(std::filesystem::path obj_file) : obj_file_(std::move(obj_file)) {}
@@ -43,7 +43,7 @@ class CheckedMaterialReader : public tinyobj::MaterialReader {
     const std::vector<Material> scanned = scan_materials(file, text);
     materials_.insert(materials_.end(), scanned.begin(), scanned.end());
     std::istringstream stream(text);
-    std::string ignored;  // LoadMtl only warns of transparency, which the renderer does not model
+    std::string ignored;  // LoadMtl warns only of transparency, which the renderer does not model
     tinyobj::LoadMtl(indices, materials, &stream, &ignored, error);
     if (materials->size() != materials_.size()) {
       throw InputError(
@@ -66,7 +66,8 @@ glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec
   return glm::cross(b - a, c - a);
 }
 
-/// True if the fan from vertex `start` covers the polygon with triangles that all face as the polygon does.
+/// Whether the fan from vertex `start` covers the polygon with triangles that all face the same way as the
+/// polygon.
 bool is_fan_start(const Polygon& polygon, std::size_t start, const glm::dvec3& normal, double tolerance) {
   const std::size_t count = polygon.size();
   for (std::size_t i = 1; i + 1 < count; ++i) {
@@ -78,15 +79,15 @@ bool is_fan_start(const Polygon& polygon, std::size_t start, const glm::dvec3& n
   return true;
 }
 
-/// The vertex whose fan triangulates the polygon: the first one for every convex polygon; nothing if there is
-/// none. A fan of true triangles is preferred to one with collinear vertices.
+/// The vertex whose fan triangulates the polygon, which is the first one for every convex polygon;
+/// std::nullopt if no fan does. A fan of proper triangles is preferred to one with collinear vertices.
 std::optional<std::size_t> fan_start(const Polygon& polygon) {
   if (polygon.size() == 3) return 0;
-  glm::dvec3 normal(0.0);  // Newell's: twice the vector area, for any planar or bent polygon
+  glm::dvec3 normal(0.0);  // Newell's normal: twice the vector area, for any planar or bent polygon
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
     normal += area_vector(polygon[0], polygon[i], polygon[i + 1]);
   }
-  if (normal == glm::dvec3(0.0)) {  // a line, or a polygon that crosses itself and has as much back as front
+  if (normal == glm::dvec3(0.0)) {  // a line, or a polygon that crosses itself and whose parts cancel
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
       if (!is_degenerate({{polygon[0], polygon[i], polygon[i + 1]}, 0})) return std::nullopt;
     }
@@ -100,7 +101,7 @@ std::optional<std::size_t> fan_start(const Polygon& polygon) {
   return std::nullopt;
 }
 
-/// Turns the polygons tinyobjloader read into triangles of a mesh.
+/// Converts tinyobjloader's polygons into triangles of a mesh.
 class MeshBuilder {
  public:
   MeshBuilder(const std::filesystem::path& file, const std::vector<glm::dvec3>& vertices, Mesh& mesh)
@@ -179,8 +180,8 @@ Mesh load_obj_mesh(const std::filesystem::path& obj_file) {
   std::string warning;
   std::string error;
   std::istringstream stream(text);
-  // Triangulation is left to MeshBuilder: tinyobjloader cuts quads along the shorter diagonal, even outside
-  // of them.
+  // MeshBuilder triangulates, because tinyobjloader cuts quads along the shorter diagonal even where it lies
+  // outside the quad.
   const bool parsed =
       tinyobj::LoadObj(&attributes, &shapes, &tinyobj_materials, &warning, &error, &stream, &material_reader,
                        /*triangulate=*/false, /*default_vcols_fallback=*/false);

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t";
 
-/// Takes the next blank-separated word off the front of `line`; empty at its end.
+/// Removes the next blank-separated word from the front of `line` and returns it; empty at the end of the
+/// line.
 std::string_view take_word(std::string_view& line) {
   const std::size_t begin = std::min(line.find_first_not_of(kBlanks), line.size());
   const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
@@ -49,7 +50,7 @@ void for_each_line(std::string_view text, Use use) {
   throw InputError(message.str());
 }
 
-/// The range a number must lie in, and how an error message calls it.
+/// The range that a number must lie in, and its description for error messages.
 struct Range {
   double low;
   double high;

@@ -15,7 +15,7 @@
 namespace testbench {
 namespace {
 
-/// Enough digits to read the same number back.
+/// The number with enough digits to be read back to the last bit.
 std::string text_of(double number) {
   char text[32];
   const int length = std::snprintf(text, sizeof(text), "%.17g", number);
@@ -41,7 +41,7 @@ struct BitsHash {
   }
 };
 
-/// Points that triangles share are written once.
+/// The OBJ text of the scene. A vertex that several triangles share is written once.
 std::string obj_of(const Scene& scene) {
   std::string text = "mtllib mesh.mtl\n";
   std::string faces;

@@ -9,7 +9,8 @@
 
 namespace testbench {
 
-/// A Lambertian surface; emission leaves the front side only (the side the counter-clockwise winding faces).
+/// A Lambertian surface. It emits from its front side only, the side from which its vertices run
+/// counter-clockwise.
 struct Material {
   std::string name;
   glm::dvec3 reflectance{0.0};  ///< linear RGB, each in [0, 1]
@@ -21,9 +22,9 @@ struct Triangle {
   std::int32_t material = 0;  ///< index into Scene::materials
 };
 
-/// A pinhole. Looking along `direction`, the picture's right is cross(direction, up): pixel x grows that way,
-/// pixel y grows down, along -up. (So with direction +z and up +y, larger world x lies to the left of the
-/// picture.)
+/// A pinhole camera. Pixel x grows along cross(direction, up), to the right of a viewer who looks along
+/// `direction`; pixel y grows along -up. So with direction +z and up +y, larger world x lies further left in
+/// the picture.
 struct Camera {
   glm::dvec3 position{0.0};
   glm::dvec3 direction{0.0, 0.0, 1.0};  ///< unit length
@@ -31,20 +32,25 @@ struct Camera {
   double vertical_field_of_view_radians = 0.0;
 };
 
+/// Largest width or height of a film, in pixels.
+inline constexpr int kMaxFilmSide = 16384;
+/// Width and height of a film for which the scene names none, in pixels.
+inline constexpr int kDefaultFilmSide = 480;
+
+/// Width and height in pixels.
 struct FilmSize {
   int width = 0;
   int height = 0;
 };
 
-/// What a render needs of a scene, independent of the files it came from. Lengths are in the scene's own
-/// unit.
+/// All that a render needs of a scene, independent of its files. Lengths are in the scene's own unit.
 struct Scene {
   std::string name;
   Camera camera;
   FilmSize film;
   std::vector<Material> materials;
-  std::vector<Triangle> triangles;       ///< none degenerate (zero area)
-  std::size_t degenerate_triangles = 0;  ///< how many the loader dropped
+  std::vector<Triangle> triangles;       ///< none of zero area
+  std::size_t degenerate_triangles = 0;  ///< number of triangles of zero area that the loader dropped
 };
 
 }  // namespace testbench

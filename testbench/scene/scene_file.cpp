@@ -19,11 +19,9 @@
 namespace testbench {
 namespace {
 
-constexpr int kDefaultFilmPixels = 480;
-constexpr int kMaxFilmPixels = 16384;
 constexpr double kLargestDouble = std::numeric_limits<double>::max();
 
-/// Errors name `where`, a file with or without a line.
+/// Throws InputError. `where` is a file, or a file and a line.
 [[noreturn]] void fail(const std::string& where, std::string_view key, std::string_view found,
                        std::string_view allowed) {
   std::ostringstream message;
@@ -39,7 +37,7 @@ std::string joined(std::initializer_list<const char*> words) {
   return result;
 }
 
-/// One table of the file: typed access to its keys, each checked.
+/// One table of a scene.toml, with typed and checked access to its keys.
 class TableReader {
  public:
   TableReader(std::string file, std::string name, const toml::table& table)
@@ -56,7 +54,8 @@ class TableReader {
 
   bool has(const char* key) const { return table_.contains(key); }
 
-  /// Fails unless exactly one of the two groups of keys is there, and it is whole. True if it is the first.
+  /// Whether the table holds the first of two groups of keys. Fails unless it holds one of them completely
+  /// and no key of the other.
   bool has_first_of(std::initializer_list<const char*> first,
                     std::initializer_list<const char*> second) const {
     const auto present = [this](const char* key) { return has(key); };
@@ -90,12 +89,12 @@ class TableReader {
   }
 
   int pixels(const char* key) const {
-    if (!has(key)) return kDefaultFilmPixels;
+    if (!has(key)) return kDefaultFilmSide;
     const toml::node& node = require(key);
     const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
-    if (!value || *value < 1 || *value > kMaxFilmPixels) {
+    if (!value || *value < 1 || *value > kMaxFilmSide) {
       fail(where(node), full_key(key), text_of(node),
-           "a whole number from 1 to " + std::to_string(kMaxFilmPixels));
+           "a whole number from 1 to " + std::to_string(kMaxFilmSide));
     }
     return static_cast<int>(*value);
   }
@@ -126,7 +125,7 @@ class TableReader {
     return *value;
   }
 
-  /// Fails at `key` (or at the table, without such a key).
+  /// Fails at the line of `key`, or at the line of the table if it has no such key.
   [[noreturn]] void fail_at(const char* key, std::string_view found, std::string_view allowed) const {
     const toml::node* node = table_.get(key);
     fail(node != nullptr ? where(*node) : where(table_), full_key(key), found, allowed);
@@ -197,7 +196,7 @@ toml::table parse_toml(const std::filesystem::path& file) {
 }
 
 glm::dvec3 unit(const glm::dvec3& vector) {
-  // Scaled first: the squares of very large or small components must not leave the range of a double.
+  // Scaled first, so that the squares of very large or small components stay within the range of a double.
   const double largest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
   return glm::normalize(vector / largest);
 }
@@ -237,7 +236,7 @@ Camera read_camera(const TableReader& table) {
   return camera;
 }
 
-/// scale, then rotate about x, y and z, then translate.
+/// The transform of a mesh: scale, then rotate about x, y and z, then translate.
 glm::dmat4 read_transform(const TableReader& table) {
   const double scale = table.has("scale") ? table.number_between("scale", 0.0, kMaxCoordinate) : 1.0;
   const glm::dvec3 angles = glm::radians(table.vector_or("rotate_degrees", glm::dvec3(0.0)));
@@ -260,7 +259,8 @@ Camera moved(Camera camera, const glm::dmat4& transform) {
   return camera;
 }
 
-/// @param camera takes the file's camera, if it holds one and there was none before
+/// Adds the mesh file that `table` names. @param camera set to the file's camera if it has one and `camera`
+/// is empty
 void add_mesh(const TableReader& table, const std::filesystem::path& directory, Scene& scene,
               std::optional<Camera>& camera) {
   table.require_only({"file", "scale", "rotate_degrees", "translate"});
@@ -299,7 +299,7 @@ TableReader subtable(const toml::table& root, const std::string& file, const cha
 }
 
 FilmSize read_film(const toml::table& root, const std::string& file) {
-  if (!root.contains("film")) return {kDefaultFilmPixels, kDefaultFilmPixels};
+  if (!root.contains("film")) return {kDefaultFilmSide, kDefaultFilmSide};
   const TableReader film = subtable(root, file, "film");
   film.require_only({"width", "height"});
   return {film.pixels("width"), film.pixels("height")};
@@ -329,16 +329,16 @@ void require_renderable(const Scene& scene, const std::string& file) {
   }
 }
 
-/// A mesh file that is a scene of its own.
+/// The scene of a glTF file that is opened directly, without a scene.toml.
 Scene gltf_scene(const std::filesystem::path& file) {
   GltfFile gltf = load_gltf(file);
   if (!gltf.camera) fail(file.string(), "camera", "none", "one that a node of the scene holds");
   Scene scene;
   scene.name = file.stem().string();
   scene.camera = gltf.camera->camera;
-  scene.film = {kDefaultFilmPixels, kDefaultFilmPixels};
-  const double width = kDefaultFilmPixels * gltf.camera->aspect_ratio.value_or(1.0);
-  scene.film.width = static_cast<int>(std::clamp(std::round(width), 1.0, double(kMaxFilmPixels)));
+  scene.film = {kDefaultFilmSide, kDefaultFilmSide};
+  const double width = kDefaultFilmSide * gltf.camera->aspect_ratio.value_or(1.0);
+  scene.film.width = static_cast<int>(std::clamp(std::round(width), 1.0, double(kMaxFilmSide)));
   scene.materials = std::move(gltf.mesh.materials);
   scene.triangles = std::move(gltf.mesh.triangles);
   scene.degenerate_triangles = gltf.mesh.degenerate_triangles;

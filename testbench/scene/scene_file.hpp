@@ -19,7 +19,7 @@ namespace testbench {
 ///               scale = s                    optional, then rotate_degrees = [x, y, z] about the x, then the
 ///               y, then the translate = [x, y, z]        z axis, then translate
 ///
-/// Throws InputError (one line: file, line, key, what was found, what is allowed), also for a scene without a
+/// Throws InputError (one line: file, line, key, what was found, what is allowed), also for a scene without
 /// light.
 Scene load_scene(const std::filesystem::path& path);
 

@@ -18,7 +18,7 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Of a library's message, what fits into one line.
+/// The first line of a library's message.
 inline std::string first_line(const std::string& text) {
   return text.substr(0, text.find_first_of("\r\n"));
 }

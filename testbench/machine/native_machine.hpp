@@ -9,8 +9,9 @@
 
 namespace testbench {
 
-/// cn::Machine without a clock: transfers are instant, nothing costs anything. The functional reference of
-/// the tests and the fast preview. A thread runs until it waits for a semaphore without a signal.
+/// cn::Machine without a clock: transfers are instant and instructions take no time. It is the functional
+/// reference of the tests and serves fast previews. A thread runs until it waits for a semaphore without a
+/// signal.
 class NativeMachine : public cn::Machine {
  public:
   NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes);
@@ -18,10 +19,12 @@ class NativeMachine : public cn::Machine {
   std::uint8_t* mono() { return mono_.data(); }
   std::uint64_t mono_bytes() const { return mono_.size(); }
 
-  /// The host's answer to a signal: runs at once, on the firmware's thread.
+  /// Sets the host's reaction to a signal of `semaphore`: `service` runs at once, on the firmware's thread,
+  /// instead of counting the signal.
   void on_signal(cn::Semaphore semaphore, std::function<void()> service);
 
-  /// Runs firmware until all its threads are over. Firmware of one thread may also be called as it is.
+  /// Runs firmware until all its threads have ended. Firmware with a single thread may also be called
+  /// directly.
   void run_firmware(const std::function<void(cn::Machine&)>& firmware);
 
   void start_thread(int priority, const std::string& name, std::function<void()> body) override;

@@ -5,8 +5,8 @@
 namespace testbench {
 namespace {
 
-/// Takes a waiting thread off its stack when another one has failed. Firmware must not catch it, so it is no
-/// std::exception.
+/// Thrown in a waiting thread to unwind its stack after another thread has failed. Not a std::exception, so
+/// that firmware does not catch it.
 struct ThreadStopped {};
 
 }  // namespace
@@ -24,9 +24,9 @@ void NativeThreads::run(const std::function<void()>& first) {
   try {
     first();
     thread.over = true;
-    // Those of lower priority, and those that the first has signalled last.
+    // Threads of lower priority and threads signalled last may still have to run.
     for (std::size_t other = next(); other < threads_.size(); other = next()) switch_to(other);
-  } catch (const ThreadStopped&) {  // failure_ says why
+  } catch (const ThreadStopped&) {  // failure_ holds the reason
   } catch (...) {
     if (!failure_) failure_ = std::current_exception();
   }
@@ -77,7 +77,7 @@ std::string NativeThreads::waiting() const {
   return names;
 }
 
-/// Returns when somebody switches back.
+/// Returns when another thread switches back to this one.
 void NativeThreads::switch_to(std::size_t thread) {
   Thread& from = *threads_[running_];
   Thread& to = *threads_[thread];
@@ -89,12 +89,12 @@ void NativeThreads::switch_to(std::size_t thread) {
 
 void NativeThreads::prepare(Thread& thread) {
   thread.entered = true;
-  thread.stack.reset(new std::byte[kStackBytes]);  // not zeroed: only what is used becomes memory
+  thread.stack.reset(new std::byte[kStackBytes]);  // not zeroed, so that only used pages take memory
   getcontext(&thread.context);
   thread.context.uc_stack.ss_sp = thread.stack.get();
   thread.context.uc_stack.ss_size = kStackBytes;
   thread.context.uc_link = nullptr;
-  const auto self = reinterpret_cast<std::uintptr_t>(this);  // makecontext passes int only
+  const auto self = reinterpret_cast<std::uintptr_t>(this);  // makecontext() passes only values of type int
   makecontext(&thread.context, reinterpret_cast<void (*)()>(&NativeThreads::enter), 2, unsigned(self >> 32),
               unsigned(self & 0xffffffffu));
 }
@@ -103,7 +103,8 @@ void NativeThreads::enter(unsigned high, unsigned low) {
   reinterpret_cast<NativeThreads*>((std::uintptr_t(high) << 32) | low)->run_body();
 }
 
-/// Goes on with the next thread that can, or with the first one, which knows what to do then.
+/// After its body has ended, a thread switches to the next one that can continue, else to the first one,
+/// which handles the end or a failure.
 void NativeThreads::run_body() {
   Thread& self = *threads_[running_];
   try {
@@ -121,7 +122,7 @@ void NativeThreads::run_body() {
   setcontext(&to.context);
 }
 
-/// Each unwinds its stack and comes back to the first.
+/// Resumes each waiting thread, which unwinds its stack and returns to the first.
 void NativeThreads::stop_others() {
   stopping_ = true;
   for (std::size_t i = 1; i < threads_.size(); ++i) {

@@ -13,32 +13,33 @@
 
 namespace testbench {
 
-/// Firmware threads without a clock: coroutines that change only where one cannot go on. Among those that
-/// can, the highest priority runs, the one started first among equals.
+/// Firmware threads without a clock: coroutines that switch only where the running one must wait. Of the
+/// threads that can continue, the one with the highest priority runs, and among equals the one started first.
 ///
-/// They are ucontext's: part of the C library, and nothing runs at the same time, so the same order comes out
-/// each time.
+/// They use the C library's ucontext. No two threads run at the same time, so their order is the same in
+/// every run.
 class NativeThreads {
  public:
-  /// @param machine whose semaphores the threads wait for
+  /// @param machine names the semaphores in messages
   /// @param has_signal whether a semaphore has a signal to take
   NativeThreads(const cn::Machine& machine, std::function<bool(int semaphore)> has_signal)
       : machine_(machine), has_signal_(std::move(has_signal)) {}
   NativeThreads(const NativeThreads&) = delete;
   NativeThreads& operator=(const NativeThreads&) = delete;
 
-  /// Runs `first` and all threads that it starts; throws what the one throws that fails before others, and
-  /// cn::MachineFault when threads are left that cannot go on.
+  /// Runs `first` and all threads that it starts. Rethrows the exception of the first thread that fails.
+  /// Throws cn::MachineFault when only threads remain that wait without end.
   void run(const std::function<void()>& first);
 
   /// Throws cn::MachineFault outside run().
   void start(int priority, const std::string& name, std::function<void()> body);
 
-  /// Lets others run until `semaphore` has a signal; false when they cannot give one.
+  /// Lets other threads run until `semaphore` has a signal. Returns false if none of them can signal it.
   bool wait(int semaphore);
 
  private:
-  static constexpr std::size_t kStackBytes = 8 << 20;  ///< touched only as far as it is used
+  static constexpr std::size_t kStackBytes =
+      8 << 20;  ///< the operating system provides only the pages that are used
   struct Thread {
     int priority = 0;
     std::string name;
@@ -53,12 +54,12 @@ class NativeThreads {
 
   static void enter(unsigned high, unsigned low);
   void run_body();
-  /// Index of the thread to run; threads_.size() when none can.
+  /// Index of the thread to run next; threads_.size() if none can continue.
   std::size_t next() const;
   void switch_to(std::size_t thread);
   void prepare(Thread& thread);
   void stop_others();
-  /// "'loads' on semaphore 'full', ..."; empty when none waits.
+  /// Lists the waiting threads: "'loads' waits on semaphore 'full', ..."; empty if no thread waits.
   std::string waiting() const;
 
   const cn::Machine& machine_;

@@ -27,7 +27,8 @@ void RecordingMachine::timed(bool on) {
 
 void RecordingMachine::sem_signal(cn::Semaphore semaphore) {
   if (timed_ && !host_answers_) writer_.signal(semaphore);
-  const bool host_answered = std::exchange(host_answers_, true);  // its signals are not the firmware's
+  const bool host_answered =
+      std::exchange(host_answers_, true);  // signals that the host sends are not part of the stream
   NativeMachine::sem_signal(semaphore);
   host_answers_ = host_answered;
 }

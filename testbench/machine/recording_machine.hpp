@@ -5,17 +5,17 @@
 
 namespace testbench {
 
-/// A native machine that writes down what its firmware asks of it: the firmware runs at the speed of plain
-/// code, and once, whatever the chips are that the stream is replayed on.
+/// A native machine that records the calls of its firmware. The firmware runs once, as fast as native code;
+/// the recorded stream can then be replayed on any number of chips.
 class RecordingMachine : public NativeMachine {
  public:
-  /// `stream` is empty and filled as the firmware runs; finish() completes it.
+  /// @param stream must be empty; filled while the firmware runs and completed by finish()
   RecordingMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, TimingStream& stream);
 
-  /// When the firmware has ended.
+  /// Must be called when the firmware has ended.
   void finish();
 
-  /// Throws cn::MachineFault: a stream has one thread.
+  /// Throws cn::MachineFault, because a stream has only one thread.
   void start_thread(int priority, const std::string& name, std::function<void()> body) override;
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;

@@ -7,15 +7,16 @@
 
 namespace testbench {
 
-/// Numbers of variable length: seven bits a byte, the lowest first, the top bit set in all but the last.
-template <class Bytes>  // of push_back()
+/// Appends a number with variable length: seven bits per byte, the lowest first; the top bit is set in all
+/// bytes but the last.
+template <class Bytes>  // a container with push_back()
 void append_number(Bytes& bytes, std::uint64_t number) {
   using Byte = typename Bytes::value_type;
   for (; number >= 0x80; number >>= 7) bytes.push_back(static_cast<Byte>(number | 0x80));
   bytes.push_back(static_cast<Byte>(number));
 }
 
-/// Reads them back; RunError at the end of the bytes.
+/// Reads numbers and texts of a stream. Throws RunError at the end of the bytes.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : next_(bytes.data()), end_(bytes.data() + bytes.size()) {}

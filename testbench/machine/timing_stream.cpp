@@ -11,9 +11,9 @@ namespace {
 
 enum class Call : std::uint8_t {
   kernel,
-  load_array,  ///< places by PE number
+  load_array,  ///< places computed from the PE number
   save_array,
-  load_each,  ///< places of their own
+  load_each,  ///< one place per PE
   save_each,
   mono,
   signal,
@@ -33,14 +33,15 @@ std::uint64_t bits_of(T value) {
   return static_cast<std::uint64_t>(value);
 }
 
-/// What the kernel that is to be replayed issued.
+/// Arguments of the replayed kernel: where its issued instructions are recorded.
 struct KernelArguments {
   const TimingStream* stream;
   ByteReader* calls;
 };
 
-/// In the place of a kernel: nothing is computed. The nodes are given as iterations of one region, in the
-/// order in which they are visited, so that sums over them round as they did.
+/// Stands in for a kernel: issues the recorded instructions without computing. The recorded nodes become
+/// iterations of one region, in the order of their visits, so that sums over them round as in the recorded
+/// run.
 void issue_again(const KernelArguments& arguments, cn::PolyMemory&, const cn::LaneMask&,
                  cn::IssueTree& issued) {
   const std::uint64_t nodes = arguments.calls->number();
@@ -53,7 +54,7 @@ void issue_again(const KernelArguments& arguments, cn::PolyMemory&, const cn::La
   }
 }
 
-/// Makes the calls of one stream on one machine.
+/// Makes the calls of one stream to one machine.
 class Replay {
  public:
   Replay(const TimingStream& stream, cn::Machine& machine)

@@ -11,13 +11,14 @@
 
 namespace testbench {
 
-/// What one firmware asked of its machine in timed code, call by call and without data: kernels with what
-/// they issued, mono instructions, transfers with their places, semaphores, reads and writes of the control
-/// unit. Control flow depends on data alone, never on a clock, so every chip that gives the firmware the same
-/// PEs and the same image of mono memory sees this stream; its timing can be had without executing a kernel.
+/// The calls that one firmware made to its machine in timed code, without their data: kernels with their
+/// issued instructions, mono instructions, transfers with their places, semaphores, reads and writes of the
+/// control unit. Control flow depends on data alone, never on a clock. So every chip with the same number of
+/// PEs and the same image of mono memory would see this stream, and its timing can be computed without
+/// executing a kernel.
 ///
-/// Compact: a call is a byte and a few numbers of variable length, what kernels issue is kept once (they
-/// repeat it), and places are kept for enabled PEs only.
+/// Streams are compact: a call is a byte and a few numbers of variable length; issued instructions that
+/// repeat are stored once; places are stored for enabled PEs only.
 class TimingStream {
  public:
   struct PolyBuffer {
@@ -30,13 +31,13 @@ class TimingStream {
   std::vector<std::string> semaphores;   ///< by number
   std::vector<PolyBuffer> poly_buffers;  ///< in the order of allocation
   std::vector<std::string> kernels;      ///< names, in the order of their first run
-  std::vector<cn::IssueCounts> issued;   ///< distinct ones
+  std::vector<cn::IssueCounts> issued;   ///< distinct counts, in the order of their first use
   std::vector<std::uint8_t> calls;
 
   bool operator==(const TimingStream& other) const;
 
-  /// Makes the same calls on `machine`, as its firmware; transfers move what happens to lie in its poly
-  /// memory. The machine must have num_pes PEs and no semaphore allocated.
+  /// Makes the same calls to `machine`, in place of its firmware. Transfers move whatever its poly memory
+  /// holds. The machine must have num_pes PEs and no allocated semaphore.
   void replay(cn::Machine& machine) const;
 };
 
@@ -45,14 +46,14 @@ class TimingStreamWriter {
  public:
   explicit TimingStreamWriter(TimingStream& stream) : stream_(stream) {}
 
-  /// @param kernel a string literal; kernels are told apart by its address, as the chip's statistics do
+  /// @param kernel a string literal; kernels are distinguished by its address, as in the chip's statistics
   void kernel(const char* kernel, const cn::IssueTree& issued);
   void transfer(const cn::Transfer& transfer);
   void mono(std::uint64_t instructions);
   void signal(cn::Semaphore semaphore);
   void wait(cn::Semaphore semaphore);
   void read(cn::MonoAddress from, std::uint64_t bytes);
-  /// Throws cn::MachineFault unless it is 8 bytes.
+  /// Throws cn::MachineFault unless `size` is 8.
   void write(cn::MonoAddress to, const void* bytes, std::uint64_t size);
 
  private:

@@ -5,7 +5,7 @@
 namespace testbench {
 namespace {
 
-/// The control unit catches up with SystemC time this often, so that few changes wait to be shown.
+/// How often the control unit synchronises with SystemC time, so that few changes are pending at a time.
 constexpr model::Cycles kSyncCycles = 50'000;
 
 template <class File>

@@ -12,17 +12,17 @@
 
 namespace testbench {
 
-/// Throws InputError if a file cannot be written, or nothing is selected.
+/// Throws InputError if a file cannot be written or the selection of waves is empty.
 void require_writable(const ObservationOptions& options, const model::ChipConfig& chip);
 
-/// Attached to a chip before its run.
+/// The outputs that are written while a chip runs. Must be constructed before the run.
 class Observation {
  public:
-  /// Throws InputError.
+  /// Throws InputError as require_writable() does.
   Observation(const ObservationOptions& options, model::Csx600& chip);
 
-  /// After the run: completes each file. Returns what is wrong with those that are not, one line each, or an
-  /// empty text: the run itself is not lost with them.
+  /// Must be called after the run; completes each file. Does not throw, so that the run is not lost: returns
+  /// one line for each file that is not complete, or an empty text.
   std::string finish();
 
  private:

@@ -7,16 +7,16 @@
 
 namespace testbench {
 
-/// Which part of a run to show as waves, and where.
+/// The part of a run to record as waves, and the file for it.
 struct WaveOptions {
   std::filesystem::path file;  ///< ends in ".vcd" or ".fst"
   model::WaveConfig config;
 };
 
-/// What to write down of a run on the chip while it goes on; none of it changes a cycle.
+/// Outputs to write while a chip runs. None of them changes a cycle.
 struct ObservationOptions {
   std::optional<WaveOptions> waves;
-  std::filesystem::path transactions;  ///< empty: none
+  std::filesystem::path transactions;  ///< an empty name writes no file
   std::filesystem::path timeline;
 
   bool any() const { return waves || !transactions.empty() || !timeline.empty(); }

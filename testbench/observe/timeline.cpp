@@ -9,7 +9,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kPicosecondsPerMicrosecond = 1e6;
-constexpr int kProcess = 1;  // of the format's: the chip
+constexpr int kProcess = 1;  // the format's process ID; stands for the chip
 
 void add_label(Json& arguments, const cn::Label& label) {
   if (label.bin == nullptr) return;

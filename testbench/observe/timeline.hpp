@@ -11,10 +11,10 @@
 
 namespace testbench {
 
-/// A run as a timeline for viewers such as Perfetto or Chrome's about:tracing, in their trace-event format
-/// (JSON object form): complete events ("X") on one track each for kernels, waits of the control unit, loads
-/// and saves of programmed I/O, and host transfers. Times are microseconds of simulated time; cycles are
-/// among the arguments. Written as it goes.
+/// Writes a run as a timeline for viewers such as Perfetto or Chrome's about:tracing, in their trace-event
+/// format (JSON object form): complete events ("X") on one track each for kernels, waits of the control unit,
+/// loads and saves of programmed I/O, and host transfers. Times are microseconds of simulated time; cycles
+/// are among the arguments. The file is written while the chip runs.
 class Timeline : public model::ChipObserver {
  public:
   /// Throws InputError if the file cannot be created.
@@ -26,7 +26,7 @@ class Timeline : public model::ChipObserver {
   void finished(const model::PioEvent& event) override;
   void ended_transfer(bool upload, std::uint64_t bytes, model::Cycles start, model::Cycles finish) override;
 
-  /// After the run. Throws RunError if the file is not complete.
+  /// Must be called after the run. Throws RunError if the file is not complete.
   void finish();
 
  private:

@@ -18,7 +18,7 @@ void TransactionLog::finished(const model::PioEvent& event) {
   open_.push_back({event, 0});
 }
 
-/// A wait ends in the cycle in which the request that it was for is over; spans come in the order of time.
+/// A wait ends in the cycle in which its request finishes. Spans are reported in order of time.
 void TransactionLog::spent(model::CycleCause cause, model::Cycles start, model::Cycles finish,
                            int semaphore) {
   if (cause == model::CycleCause::wait_load || cause == model::CycleCause::wait_save) {

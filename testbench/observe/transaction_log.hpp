@@ -9,18 +9,19 @@
 
 namespace testbench {
 
-/// A line of JSON for each request of programmed I/O, in the order in which they started, and for each
+/// Writes a line of JSON for each request of programmed I/O, in the order in which they started, and for each
 /// transfer between host and mono memory:
 ///
 ///   request      id, ascending in the order of enqueueing; null for the host
 ///   kind         load (mono to poly), save (poly to mono), upload, download
-///   bin, block   what it belongs to, as the firmware says; null if it says nothing
-///   semaphore    that it signals; null if none
-///   bytes, pes   moved in all PEs, and how many take part
+///   bin, block   bin and block that the firmware labels it with; null without a label
+///   semaphore    name of the semaphore that it signals; null if none
+///   bytes, pes   bytes moved in all PEs, and number of PEs that take part
 ///   enqueued, started, finished   cycles
-///   waited_for   cycles for which the control unit stood still until just this request was over
+///   waited_for   cycles for which the control unit waited for this request
 ///
-/// waited_for of all lines adds up to the cycles that the control unit spent in wait_load and wait_save.
+/// The sum of waited_for over all lines is the number of cycles that the control unit spent in wait_load and
+/// wait_save.
 class TransactionLog : public model::ChipObserver {
  public:
   /// Throws InputError if the file cannot be created.
@@ -30,7 +31,7 @@ class TransactionLog : public model::ChipObserver {
   void finished(const model::PioEvent& event) override;
   void ended_transfer(bool upload, std::uint64_t bytes, model::Cycles start, model::Cycles finish) override;
 
-  /// After the run. Throws RunError if the file is not complete.
+  /// Must be called after the run. Throws RunError if the file is not complete.
   void finish();
 
  private:
@@ -46,7 +47,7 @@ class TransactionLog : public model::ChipObserver {
   const model::Csx600& chip_;
   StreamedFile file_;
   std::string buffer_;
-  std::deque<Transaction> open_;  ///< may still be waited for
+  std::deque<Transaction> open_;  ///< requests that the control unit may still wait for
 };
 
 }  // namespace testbench

@@ -9,10 +9,12 @@
 namespace testbench {
 namespace {
 
-/// What the view opens on when fewer blocks were computed: a few of the paper's intersection bin.
+/// Time that the view shows when too few blocks were computed: about as long as a few blocks of the paper's
+/// intersection bin.
 constexpr std::uint64_t kViewPicoseconds = 300'000'000;
 
-/// Blocks that the view opens on, from the second in the window on: its neighbours are seen as well.
+/// Number of blocks that the view shows, from the second in the window on, so that the first block's
+/// neighbours are visible as well.
 constexpr std::size_t kBlocksInView = 4;
 
 model::MemoryCounters memory_counters(const model::Csx600& chip) {
@@ -30,7 +32,7 @@ void add_names(std::vector<model::ValueName>& names, std::uint64_t first,
                const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
     std::string name = text;
-    std::replace(name.begin(), name.end(), ' ', '_');  // a translate filter ends a name at a blank
+    std::replace(name.begin(), name.end(), ' ', '_');  // in a translate filter a blank ends the name
     names.push_back({first++, name});
   }
 }

@@ -14,19 +14,19 @@
 
 namespace testbench {
 
-/// Throws InputError when the trace or what stands beside it cannot be written, or the selection or a window
-/// is empty.
+/// Throws InputError if the trace or its view cannot be written, or if the selection or a window is empty.
 void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip);
 
-/// The waves of one run: the trace, a GTKWave view on its first blocks and the names of states and kernels.
+/// The waves of one run: the trace, a GTKWave view of its first blocks, and filters with the names of states
+/// and kernels.
 class WaveFiles {
  public:
   WaveFiles(const WaveOptions& options, model::Csx600& chip);
 
   model::ChipObserver& observer() { return *probe_; }
 
-  /// After the run. Throws RunError if nothing ran in the windows or a file is not complete; then none of
-  /// them is left.
+  /// Must be called after the run. Throws RunError if no kernel ran in the windows or a file is not complete;
+  /// then the trace is removed.
   void finish();
 
  private:

@@ -11,10 +11,11 @@ namespace testbench {
 namespace {
 
 constexpr int kMaxIterations = 8;
-/// A whole cycle a PE more or less moves the unbuffered cell by 0.7 %.
+/// Largest relative error of a fitted cell at which the fit ends. One cycle per PE changes the unbuffered
+/// cell by 0.7 %.
 constexpr double kConverged = 0.004;
 
-/// The constants as a vector, each in units of a sensible step.
+/// Step of each constant, the unit of the fit's vector.
 constexpr double kSteps[3] = {0.5, 4, 400};
 
 FittedConstants constants_at(const glm::dvec3& x) {
@@ -27,7 +28,8 @@ glm::dvec3 point_of(const FittedConstants& constants) {
           constants.transfer_call_cycles / kSteps[2]};
 }
 
-/// The paper's machine as one chip: several chips share the segments.
+/// The seconds that one chip would take for the cell. With several chips, each does its share of the
+/// segments.
 double target_seconds(const PaperCell& cell, const Assumptions& assumptions) {
   return cell.seconds() * assumptions.chips;
 }
@@ -51,7 +53,7 @@ class Fit {
     return run_paper_cells(assumptions_.scene, run, cells, options_.at_once);
   }
 
-  /// Relative errors of the fitted cells; 0 for one that is not fitted.
+  /// Relative errors of the fitted cells; 0 for a cell that is not fitted.
   glm::dvec3 residual(const glm::dvec3& x) const {
     const std::vector<double> found = seconds(constants_at(x), cells_);
     glm::dvec3 errors(0.0);
@@ -60,7 +62,8 @@ class Fit {
     return errors;
   }
 
-  /// One column an unknown; a constant that is not fitted has a column that leaves it where it is.
+  /// The Jacobian by differences, one column per unknown. The column of a constant that is not fitted is that
+  /// of the unit matrix, which leaves it unchanged.
   glm::dmat3 slopes(const glm::dvec3& x, const glm::dvec3& residual_at_x) const {
     glm::dmat3 matrix(1.0);
     for (glm::length_t i = 0; i < unknowns(); ++i) {
@@ -90,7 +93,7 @@ double largest(const glm::dvec3& errors) {
   return std::max({std::abs(errors[0]), std::abs(errors[1]), std::abs(errors[2])});
 }
 
-/// Newton's step, at most as far as the constants have been from zero.
+/// Newton's step, limited to half of each constant and at least to two steps.
 glm::dvec3 newton_step(const glm::dmat3& slopes, const glm::dvec3& errors, const glm::dvec3& x) {
   const glm::dvec3 step = -(glm::inverse(slopes) * errors);
   const glm::dvec3 limit = glm::max(0.5 * glm::abs(x), glm::dvec3(2.0));

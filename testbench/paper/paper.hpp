@@ -26,49 +26,51 @@ const std::vector<PaperRow>& paper_rows();
 inline constexpr std::array<path_tracer::Program, 3> kPaperPrograms = {
     path_tracer::Program::segments, path_tracer::Program::direct, path_tracer::Program::full};
 
-/// A number of the tables: a row and a program.
+/// A cell of the tables: a row and a program.
 struct PaperCell {
   std::size_t row;
   path_tracer::Program program;
 
   double seconds() const { return paper_rows()[row].seconds[std::size_t(program)]; }
-  /// The firmware that the cell is measured with; `base` gives what the tables leave open.
+  /// The configuration of the firmware for this cell. `base` gives what the tables leave open.
   path_tracer::ProgramConfig firmware(path_tracer::ProgramConfig base) const;
-  /// Whether the same run gives both cells: buffering nothing is n = 0, whatever n says.
+  /// Whether one run measures both cells. Without buffered loads and saves every n is the same as n = 0.
   bool is_same_run(const PaperCell& other) const;
-  /// "segments, n = 0"
+  /// For example "segments, n = 0".
   std::string name() const;
 };
 
-/// All 24, row by row.
+/// All 24 cells, row by row.
 std::vector<PaperCell> paper_cells();
 
 /// The cells that the preset `paper` was fitted to (`csx600 calibrate`); all others are predicted.
 std::vector<PaperCell> fitted_cells();
 bool is_fitted(const PaperCell& cell);
 
-/// How far measured seconds are from the paper's, over the cells that were not fitted; relative.
+/// Relative error of measured seconds against the paper's, over the cells that were not fitted.
 struct PredictionError {
   double mean = 0;
   double worst = 0;
   int cells = 0;
 };
-/// @param seconds of all 24 cells, each on one of `chips` chips that share the paper's work
+/// @param seconds seconds of all 24 cells, measured on one of `chips` chips that share the paper's work
 PredictionError prediction_error(const std::vector<double>& seconds, int chips = 1);
 
-/// The firmware as the paper is read: one shadow ray for every segment, whichever way it goes ("a single
-/// shadow ray per path segment"). The paper states neither the length of its bins nor when roulette begins:
-/// bins of 8 blocks, and roulette late, because radiance takes below 1 % only when paths are long.
+/// The firmware of the paper as this project reads it: one shadow ray for every segment, whatever its
+/// direction ("a single shadow ray per path segment"). The paper states neither the length of its bins nor
+/// where roulette begins. Bins have 8 blocks here, and roulette begins late, because radiance takes less than
+/// 1 % of the time only if paths are long.
 path_tracer::ProgramConfig paper_program();
 
-/// The image (paper, figure 4): 480 x 480, 1000 segments a pixel.
+/// The image (paper, figure 4): 480 x 480 pixels, 1000 segments per pixel.
 inline constexpr double kPaperImageSegments = 480.0 * 480.0 * 1000.0;
 inline constexpr double kPaperImageSeconds = 3036.37;
 
-/// The share of radiance in the full computation, n = 1; `seconds` of all 24 cells.
+/// The share of radiance in the time of the full computation at n = 1.
+/// @param seconds seconds of all 24 cells
 double radiance_share(const std::vector<double>& seconds);
 
-/// Path segments a second of the silicon with double buffering: the n = 1 row.
+/// Path segments per second of the silicon with double buffering (row n = 1).
 double silicon_segments_per_second(path_tracer::Program program);
 
 }  // namespace testbench

@@ -8,9 +8,10 @@
 
 namespace testbench {
 
-/// Simulated seconds for 1,000,000 path segments of each cell, one process a run. `options` gives chip,
-/// samples and what the cell leaves open of the firmware. Cells that the firmware runs alike are run once.
-/// @param done is told the share of runs finished
+/// Returns the simulated seconds for 1,000,000 path segments of each cell. Each run has a process of its own;
+/// cells that one run measures are run once. `options` gives chip, samples and what the cells leave open of
+/// the firmware.
+/// @param done called with the share of finished runs
 std::vector<double> run_paper_cells(const Scene& scene, const RenderOptions& options,
                                     const std::vector<PaperCell>& cells, int at_once,
                                     const std::function<void(double share)>& done = {});

@@ -1,13 +1,13 @@
-// What runs and sweeps share: the page's parts, numbers for people, charts.
+// Shared by the pages of runs and sweeps: parts of the page, readable numbers, charts.
 "use strict";
 
 const kColours = ["#2f6db5", "#d1782b", "#3a923a", "#a23b72", "#7a5fb5", "#8c6d46", "#c2467d", "#6b6b6b", "#9aa320", "#25a1a8"];
 const charts = [];
 
-// For those who look at the page without a console.
+// Records an error in an attribute of the page, for those who do not see the console.
 window.addEventListener("error", (event) => { document.body.dataset.error = event.message; });
 
-/// Text is measured where it is drawn, so the charts need the page's font by name.
+/// The charts need the page's font by name, because they measure text themselves.
 function chartBase() {
   return { animation: false, color: kColours, textStyle: { fontFamily: getComputedStyle(document.body).fontFamily } };
 }
@@ -19,7 +19,7 @@ function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-/// A part of the page; returns what its content goes into.
+/// Adds a section to the page and returns the element for its content.
 function addSection(title, explanation, wide = false) {
   const section = element("section", wide ? { class: "wide" } : {}, element("h2", {}, title));
   if (explanation) section.append(element("p", {}, explanation));
@@ -52,8 +52,8 @@ function addChart(section, option) {
   return chart;
 }
 
-/// Rows of [label, value]: horizontal bars, the longest on top, the shortest of too many as one. `label` says a value
-/// for people.
+/// Horizontal bars for rows of [label, value], the longest on top; if there are too many, the shortest are
+/// joined into one. `label` formats a value.
 function addBars(section, rows, label) {
   const kMost = 14;
   const falling = rows.filter((row) => row[1] > 0).sort((a, b) => b[1] - a[1]);
@@ -72,7 +72,7 @@ function addBars(section, rows, label) {
   chart.resize();
 }
 
-/// Text in the first column and where a cell is marked { text }, numbers elsewhere.
+/// A table. Cells hold numbers, except in the first column and where a cell is { text }.
 function addTable(section, head, rows) {
   const cell = (value) => typeof value === "object" && value !== null
     ? element("td", { class: value.class || "text" }, value.text)

@@ -1,6 +1,6 @@
 #include "testbench/report/report_assets.hpp"
 
-// Symbols that the linker makes of a file's name and its bytes.
+// Symbols that the linker defines for a file's bytes, named after the file.
 extern "C" {
 extern const char _binary_report_page_html_start[];
 extern const char _binary_report_page_html_end[];

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// The parts of the report page, as they lie in testbench/report.
+/// The parts of the report page: the files of testbench/report, linked into the program.
 namespace testbench::report_assets {
 
 std::string_view page_html();

@@ -1,18 +1,15 @@
 #include "testbench/report/report_page.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "testbench/report/report_assets.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 #include "testbench/sweep/sweep_table.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {
@@ -20,18 +17,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-std::string read_file(const fs::path& path, const char* allowed) {
-  std::ostringstream bytes;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || fs::is_directory(path) || !(bytes << stream.rdbuf()))
-    throw InputError(path.string() + ": found that it cannot be read (" +
-                     std::strerror(fs::is_directory(path) ? EISDIR : errno) + "); allowed: " + allowed);
-  return bytes.str();
-}
-
 Json parse(const fs::path& path) {
   const std::string text =
-      read_file(path, "a statistics file of `csx600 render --stats` or a directory of `csx600 sweep`");
+      read_input_file(path, "a statistics file of `csx600 render --stats` or a directory of `csx600 sweep`");
   Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
     throw InputError(path.string() +
@@ -46,7 +34,7 @@ Json parse(const fs::path& path) {
   return json;
 }
 
-/// What the page reads without asking.
+/// Throws InputError unless `json` has all keys that the page reads unconditionally.
 void require_parts(const fs::path& path, const Json& json) {
   const bool is_sweep = json["format"] == kSweepFormat;
   const std::vector<const char*> parts =
@@ -87,13 +75,14 @@ std::string base64(const std::string& bytes) {
 
 std::string image_address(const std::string& image) {
   constexpr const char* kAllowed = "a PNG file of `csx600 render --png`";
-  const std::string bytes = read_file(image, kAllowed);
+  const std::string bytes = read_input_file(image, kAllowed);
   if (bytes.rfind("\x89PNG\r\n\x1a\n", 0) != 0)
     throw InputError("--image: " + image + ": found no PNG; allowed: " + kAllowed);
   return "data:image/png;base64," + base64(bytes);
 }
 
-/// JSON as the content of a script, which "</" could end; "<" occurs within strings only.
+/// JSON as the content of a script element, which the text "</" would end. In JSON "<" occurs only within
+/// strings.
 std::string for_script(const std::string& json) {
   std::string safe;
   for (const char c : json) safe += c == '<' ? "\\u003c" : std::string(1, c);
@@ -106,7 +95,7 @@ std::string for_html(const std::string& text) {
   return safe;
 }
 
-/// The page's places "{{NAME}}" filled, left to right; what is filled in is not looked through.
+/// The page with its places "{{NAME}}" filled from left to right. Filled-in text is not searched for places.
 std::string fill(std::string_view page,
                  const std::vector<std::pair<std::string_view, std::string_view>>& places) {
   std::string filled;

@@ -1,4 +1,4 @@
-// One run: its statistics file, and its image if there is one.
+// The page of one run: its statistics file, and its image if there is one.
 "use strict";
 
 const kCauses = {
@@ -41,7 +41,8 @@ function showKernels(run, chip) {
                                     ...(hasWaits ? [kernel.exposed_wait_cycles] : [])]));
 }
 
-/// How full the ray bin is, pass by pass: what keeps PEs busy. Runs that did not count it show kernels only.
+/// How full the ray bin is in each pass, which decides how many PEs are busy. Runs that did not count it show
+/// kernels only.
 function showTime(run, chip) {
   const intervals = run.counts.rays_by_interval;
   if (!Array.isArray(intervals) || intervals.length < 2) return;
@@ -59,7 +60,7 @@ function showTime(run, chip) {
   });
 }
 
-/// Operations a PE does for one instruction of a class; a routine or a divide is one.
+/// Operations of a PE for one instruction of a class; a routine or a division counts as one.
 function flopsOf(kernel) {
   if ("flops" in kernel) return kernel.flops;
   let flops = 0;
@@ -70,8 +71,8 @@ function flopsOf(kernel) {
   return flops;
 }
 
-/// Floating-point work and the bytes behind it, against what arithmetic and each path could do at most (Williams,
-/// Waterman and Patterson, Roofline, 2009).
+/// The roofline: floating-point work and the bytes moved for it, against the peaks of arithmetic and of each
+/// path (Williams, Waterman and Patterson, Roofline, 2009).
 function roofline(run, chip) {
   if (chip.roofline) {
     const roof = chip.roofline;

@@ -1,9 +1,9 @@
-// A sweep: results over its axes, the Pareto front, all points.
+// The page of a sweep: results over its axes, the Pareto front, all points.
 "use strict";
 
 const kHeadline = ["rays_per_second", "segments_per_second", "simulated_seconds", "chip.pe_utilisation", "chip.exposed_pio_share",
                    "pio_utilisation", "ddr_utilisation", "chip.ddr_bytes_per_second", "ddr_bytes_per_ray", "rays_per_joule"];
-/// What rays are paid with, the most telling first.
+/// The results that count as costs of a ray, the most informative first.
 const kCosts = ["chip.energy.joules", "chip.energy.watts", "total_sram_bytes", "chip.ddr_bytes_per_second", "ddr_bytes_per_ray", "pio_bytes_per_ray"];
 const kMostSeries = 12;
 
@@ -15,7 +15,7 @@ function isNumeric(values) {
   return values.every((value) => typeof value === "number");
 }
 
-/// Spread over more than a decade: equal ratios look equal.
+/// The type of axis for values: logarithmic if they span more than a decade, so that equal ratios look equal.
 function scaleOf(values) {
   if (!isNumeric(values)) return "category";
   return Math.min(...values) > 0 && Math.max(...values) / Math.min(...values) > 10 ? "log" : "value";
@@ -99,7 +99,7 @@ class AxisPlot {
   }
 }
 
-/// The points that no other beats in both: less cost and more gain.
+/// The Pareto front: the points for which no other has both less cost and more gain.
 function paretoFront(points, cost, gain) {
   const sorted = [...points].sort((a, b) => cost(a) - cost(b) || gain(b) - gain(a));
   let best = -Infinity;
@@ -144,7 +144,7 @@ class ParetoPlot {
   }
 }
 
-/// Of those that all points have and that differ between them.
+/// The costs that all points have and that differ between points.
 function costsOf(points) {
   const costs = {};
   for (const name of kCosts) {

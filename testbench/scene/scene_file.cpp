@@ -259,8 +259,8 @@ Camera moved(Camera camera, const glm::dmat4& transform) {
   return camera;
 }
 
-/// Adds the mesh file that `table` names. @param camera set to the file's camera if it has one and `camera`
-/// is empty
+/// Adds the mesh file that `table` names.
+/// @param camera set to the file's camera if it has one and `camera` is empty
 void add_mesh(const TableReader& table, const std::filesystem::path& directory, Scene& scene,
               std::optional<Camera>& camera) {
   table.require_only({"file", "scale", "rotate_degrees", "translate"});

@@ -2,33 +2,20 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {
 
 constexpr std::size_t kMostSteps = 100'000;
 
-std::string read_text(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || std::filesystem::is_directory(path) || !(text << stream.rdbuf()))
-    throw InputError(path + ": found that it cannot be read (" +
-                     std::strerror(std::filesystem::is_directory(path) ? EISDIR : errno) +
-                     "); allowed: a readable TOML file");
-  return text.str();
-}
-
 toml::table parse(const std::string& path) {
-  const std::string text = read_text(path);
+  const std::string text = read_input_file(path, "a readable TOML file");
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {

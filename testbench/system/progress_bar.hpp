@@ -14,7 +14,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Cheap enough to be called often. @param share the share done, 0 to 1
+  /// Cheap enough to be called often.
+  /// @param share the share done, 0 to 1
   void show(double share);
 
  private:

@@ -15,7 +15,7 @@ using examples::Dgemm;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Numbers in [-1, 1) that only depend on their index: splitmix64 (Steele, Lea, Flood, 2014).
+/// A pseudo-random number in [-1, 1) that depends only on its index: splitmix64 (Steele, Lea, Flood, 2014).
 double number(std::uint64_t index) {
   std::uint64_t bits = (index + 1) * 0x9e3779b97f4a7c15u;
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -36,7 +36,7 @@ void write(std::vector<std::uint8_t>& mono, cn::MonoPointer<T> to, std::uint64_t
   std::memcpy(mono.data() + (to + index).address, &value, sizeof(value));
 }
 
-/// Where the elements of a DGEMM problem lie.
+/// The places of the elements of a DGEMM problem in mono memory.
 class DgemmBlocks {
  public:
   DgemmBlocks(const Dgemm::Problem& problem, int num_pes)
@@ -54,7 +54,8 @@ class DgemmBlocks {
   std::uint64_t k() const { return k_; }
   std::uint64_t start_elements() const { return column_blocks_ * pes_ * tiles_ * kColumns; }
 
-  /// Of the terms of the sums in row i: it is PE i / 2's, which starts with its own number.
+  /// The first term that is added in the sums of row i. PE i / 2 computes the row and starts with the term of
+  /// its own number.
   std::uint64_t first_term(std::uint64_t i) const { return i / kRows % pes_ % k_; }
 
   std::uint64_t a(std::uint64_t i, std::uint64_t l) const {
@@ -113,12 +114,12 @@ void check_product(const DgemmBlocks& blocks, cn::MonoPointer<double> c, const s
       const double found = read(mono, c, blocks.c(i, j));
       if (found != row[j])
         throw RunError("DGEMM: element (" + std::to_string(i) + ", " + std::to_string(j) + ") is " +
-                       std::to_string(found) + ", the host's is " + std::to_string(row[j]));
+                       std::to_string(found) + ", a plain product gives " + std::to_string(row[j]));
     }
   }
 }
 
-/// Fills A and B, as the firmware expects them.
+/// Writes A and B in the layout that the firmware expects.
 void write_factors(std::vector<std::uint8_t>& mono, const Dgemm::Problem& problem,
                    const DgemmBlocks& blocks) {
   for (std::uint64_t i = 0; i < blocks.m(); ++i)
@@ -135,7 +136,7 @@ double normal_cdf(double x) {
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
 }
 
-/// Mean and standard deviation of the payoff at maturity, from Black and Scholes (1973) and the second moment
+/// Mean and standard deviation of the payoff at maturity, by Black and Scholes (1973) and the second moment
 /// of a truncated log-normal distribution.
 struct Payoff {
   double mean;
@@ -184,7 +185,8 @@ class FftCheck {
  private:
   static constexpr std::uint64_t kSize = examples::kFftSize;
   static constexpr std::uint64_t kOutputs = 24;
-  /// Outputs are about 400 in size; 18 stages of single precision leave 1e-6 of that.
+  /// Outputs have a magnitude of about 400; rounding in 18 stages of single precision leaves a relative error
+  /// of 1e-6.
   static constexpr double kTolerance = 5e-3;
 
   static std::complex<double> to_double(const examples::Complex& a) { return {a.real, a.imaginary}; }

@@ -12,7 +12,8 @@ struct Sweep {
   std::vector<const char*> values;
 };
 
-/// The tables' own suggestions where they make one; else a quarter to four times the default and beyond.
+/// The alternatives that the parameter table suggests, if any; else from a quarter to four times the default
+/// and beyond.
 const std::vector<Sweep>& sweeps() {
   static const std::vector<Sweep> all = {{"pio.per_pe_cycles", {"0", "4", "30", "60"}},
                                          {"ddr.page_miss_cycles", {"20", "120", "400"}},

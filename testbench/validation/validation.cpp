@@ -20,8 +20,8 @@ using examples::PioSweep;
 constexpr const char* kShipped = "csx600";
 constexpr const char* kDesign = "csx600_250mhz";
 
-/// A chip whose firmware starts at cycle 0, its mono memory filled beforehand: none of the published figures
-/// includes the host.
+/// A chip with filled mono memory whose firmware starts at cycle 0, since no published figure includes the
+/// host.
 class BareChip {
  public:
   BareChip(const model::ChipConfig& config, const std::vector<std::uint8_t>& mono) : chip_("csx600", config) {
@@ -54,7 +54,7 @@ class BareChip {
   model::Csx600 chip_;
 };
 
-/// Cycles by cause, and the work done.
+/// The result of a run as JSON: cycles by cause, and the work done.
 std::string run_example(const model::ChipConfig& config, const ExampleRun& run) {
   BareChip chip(config, run.mono);
   chip.run(run.firmware);
@@ -75,7 +75,7 @@ constexpr int kSweepBytes[] = {8, 32, 80, 256, 1024, 4096};
 constexpr int kSweepOffsets[] = {0, 56};
 constexpr int kSweepRepeats = 16;
 
-/// Bytes a cycle when `repeats` transfers took so long.
+/// Bytes per cycle of `repeats` transfers that took `cycles`.
 double rate(const PioSweep::Pattern& pattern, int repeats, model::Cycles cycles) {
   return double(pattern.pes) * pattern.bytes * repeats / double(cycles);
 }
@@ -105,7 +105,7 @@ class SweepRun {
   }
 
   void measure(PioSweep& sweep, int pes, int bytes, int offset) {
-    // Pieces lie apart, each at the same place within a packet.
+    // Pieces lie apart, each at the same offset within a packet.
     PioSweep::Pattern pattern{pes, bytes, std::uint64_t(offset), std::uint64_t(bytes / 64 + 2) * 64};
     const model::Cycles start = chip_.now();
     sweep.load(pattern, kSweepRepeats);
@@ -148,7 +148,7 @@ const TransferPoint& transfer(const std::vector<TransferPoint>& points, int byte
   const auto is_it = [&](const TransferPoint& point) {
     return point.bytes_per_pe == bytes && point.packet_offset_bytes == offset;
   };
-  // The most PEs come last.
+  // Points with the most PEs come last.
   const auto found = std::find_if(points.rbegin(), points.rend(), is_it);
   if (found == points.rend()) throw RunError("PIO sweep has no point of " + std::to_string(bytes) + " bytes");
   return *found;
@@ -172,8 +172,8 @@ double cycles_per_sample_and_pe(const Json& result) {
   return result.at("cycles").get<double>() * result.at("pes").get<double>() / result.at("work").get<double>();
 }
 
-/// Himeno does 34 operations a cell and moves at least 13 floats in and 1 out; that many at the bandwidth of
-/// small pieces that are not aligned.
+/// An upper bound for Himeno, which does 34 operations per cell and moves at least 13 floats in and 1 out, at
+/// the bandwidth of small misaligned pieces.
 double himeno_bound_flops(const TransferPoint& small) {
   constexpr double kOperations = 34;
   constexpr double kBytes = 14 * 4;
@@ -215,7 +215,7 @@ std::vector<Figure> make_figures(const std::vector<Json>& results,
   const TransferPoint& misaligned = transfer(shipped, 80, 56);
   constexpr double kGiga = 1e-9;
   const std::string path =
-      "a third of the kernel's cycles are steps of B along the PE-to-PE path, which go on beside nothing: 16 "
+      "a third of the kernel's cycles are steps of B along the PE-to-PE path, which overlap with nothing: 16 "
       "doubles of registers hold 8 sums, so each vector of B is used twice in a PE; by that alone 58 % of "
       "the "
       "peak, and each word of programmed I/O takes a cycle from all PEs' loads and stores (stolen below)";

@@ -10,11 +10,10 @@
 
 namespace testbench {
 
-/// How a published figure is meant.
+/// Whether a published figure is a value or a bound.
 enum class Published : std::uint8_t { value, at_least, at_most };
 
-/// A figure of the chip that is known from elsewhere, beside the model's. Nothing in the model was fitted to
-/// it.
+/// A published figure of the chip beside the model's. Nothing in the model was fitted to it.
 struct Figure {
   std::string what;
   std::string unit;
@@ -22,26 +21,26 @@ struct Figure {
   double model = 0;
   Published kind = Published::value;
   double published_low = 0;
-  double published_high = 0;  ///< the same as low unless a range was published
+  double published_high = 0;  ///< equal to published_low unless a range was published
   std::string source;
-  std::string note;  ///< what the model lacks, where it is off
+  std::string note;  ///< what the model lacks if its figure is off
 
-  /// From the nearest published value; 0 within the range or on the right side of a bound.
+  /// Error against the nearest published value; 0 within the range or on the right side of a bound.
   double error_percent() const;
 };
 
-/// Where the cycles of one run went, in percent of it.
+/// The cycles of one run by cause, in percent of the run.
 struct CycleShares {
   std::string run;
   std::string chip;
-  std::vector<std::pair<std::string, double>> percent;  ///< by cause, those above zero
+  std::vector<std::pair<std::string, double>> percent;  ///< by cause; only causes above zero
 };
 
-/// Programmed I/O that nothing else disturbs and that nothing overlaps.
+/// Bandwidth of programmed I/O alone, without other traffic and without overlap.
 struct TransferPoint {
   int pes = 0;
   int bytes_per_pe = 0;
-  int packet_offset_bytes = 0;  ///< of each PE's piece
+  int packet_offset_bytes = 0;  ///< offset of each PE's piece within a packet
   double load_bytes_per_second = 0;
   double save_bytes_per_second = 0;
 };
@@ -49,24 +48,24 @@ struct TransferPoint {
 struct Validation {
   std::vector<Figure> figures;
   std::vector<CycleShares> shares;
-  std::vector<TransferPoint> transfers;  ///< on preset csx600
+  std::vector<TransferPoint> transfers;  ///< with preset csx600
 };
 
 struct ValidationOptions {
-  /// The chip of a preset, with the user's changes.
+  /// Returns the chip of a preset with the user's changes.
   std::function<model::ChipConfig(const std::string& preset)> chip;
   cn::Level level = cn::widest_level();
   int jobs = 1;
 };
 
-/// Runs the examples (firmware/examples) on the chip, each in a process of its own, and checks what they
-/// computed. Throws InputError for a chip that they do not fit, RunError for a wrong result. `progress` is
-/// told the share done.
+/// Runs the examples (firmware/examples) on the chip, each in a process of its own, and checks their results.
+/// Throws InputError for a chip that they do not fit, RunError for a wrong result. `progress` receives the
+/// share of finished runs.
 Validation validate(const ValidationOptions& options, const std::function<void(double)>& progress = {});
 
-/// Tables for people.
+/// The figures as readable tables.
 std::string validation_text(const Validation& validation);
-/// The figures, one a line.
+/// The figures as CSV, one per line.
 std::string validation_csv(const Validation& validation);
 nlohmann::ordered_json to_json(const Validation& validation);
 

@@ -68,7 +68,7 @@ std::string transfers_text(const std::vector<TransferPoint>& transfers) {
   return text;
 }
 
-/// Quoted, as text may hold commas.
+/// A text in CSV's quotes, since it may contain commas.
 std::string csv_text(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);

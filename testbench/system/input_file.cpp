@@ -1,0 +1,22 @@
+#include "testbench/system/input_file.hpp"
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+
+#include "testbench/system/descriptor.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+
+std::string read_input_file(const std::filesystem::path& path, const std::string& allowed) {
+  std::ostringstream bytes;
+  std::ifstream stream(path, std::ios::binary);
+  const bool is_directory = std::filesystem::is_directory(path);
+  if (!stream || is_directory || !(bytes << stream.rdbuf()))
+    throw InputError(path.string() + ": found that it cannot be read (" +
+                     system_message(is_directory ? EISDIR : errno) + "); allowed: " + allowed);
+  return std::move(bytes).str();
+}
+
+}  // namespace testbench

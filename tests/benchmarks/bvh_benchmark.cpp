@@ -1,4 +1,4 @@
-// The tree of boxes on the host: splitting, packing, encoding.
+// Building the tree of boxes: splitting, packing, encoding.
 
 #include <benchmark/benchmark.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 using namespace testbench;
 
-/// Triangles that fill the cube equally densely, whatever their number.
+/// Triangles that fill the cube with equal density, whatever their number.
 std::vector<Triangle> soup(const benchmark::State& state) {
   const auto count = static_cast<int>(state.range(0));
   return test_support::soup(count, 1.0, 0.5 / std::cbrt(double(count)), 1);

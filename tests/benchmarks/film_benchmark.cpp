@@ -1,4 +1,4 @@
-// A sample of radiance on the film: at home in the host's cache, and on a film of the scene's size.
+// Adding a sample of radiance to a film that fits the simulator's cache, and to a film of the scene's size.
 
 #include <benchmark/benchmark.h>
 
@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Pixels in the order in which paths end: near each other, but not one after the other.
+/// Pixels in an order like that in which paths end: near each other, but not consecutive.
 void film_add(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
   testbench::Film film({side, side}, 16);

@@ -1,6 +1,6 @@
-// How many PEs should the host execute together? Times the same intersection kernel with its lanes in strips
-// of different widths, up to the whole array at once. Build with `cmake --build --preset release --target
-// strip_width_benchmark`; it is compiled for x86-64-v3.
+// How many PEs should the simulator execute together? Times the same intersection kernel with its lanes in
+// strips of different widths, up to the whole array at once. Build with `cmake --build --preset release
+// --target strip_width_benchmark`; it is compiled for x86-64-v3.
 
 #include <array>
 #include <chrono>
@@ -70,7 +70,8 @@ Wide<lanes> dot(const Wide3<lanes>& a, const B& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Keeps the nearest distance of one strip, after Moeller and Trumbore 1997.
+/// Tests one triangle against the rays of a strip and keeps the nearest distances (Moeller and Trumbore
+/// 1997).
 template <int lanes>
 [[gnu::flatten, gnu::noinline]] void intersect_strip(const std::vector<Triangle>& triangles,
                                                      const double* rays, int first_pe, double* nearest_out) {

@@ -1,4 +1,4 @@
-// Programmed I/O on the host: the copy itself, its description, what the memory charges for it.
+// Simulator time of programmed I/O: the copy itself, its description, its booking in the memory.
 
 #include <benchmark/benchmark.h>
 
@@ -18,7 +18,7 @@ constexpr std::size_t kMonoBytes = 1 << 20;
 
 enum class Places { array, gather };
 
-/// A transfer of `bytes` a PE; gathers address ascending records with gaps, as the path tracer's do.
+/// A transfer of `bytes` per PE. Gathers address ascending records with gaps, as in the path tracer.
 class Request {
  public:
   Request(cn::Direction direction, Places places, int bytes, int enabled_pes, unsigned seed) {
@@ -44,8 +44,8 @@ class Request {
   cn::Transfer transfer_;
 };
 
-/// Requests that differ in which PEs take part and in their addresses: of one and the same, the host's branch
-/// predictor would know everything by heart.
+/// Requests that differ in enabled PEs and addresses, because the branch predictor of the x86 would learn a
+/// single repeated request.
 class Requests {
  public:
   Requests(cn::Direction direction, Places places, const benchmark::State& state) {

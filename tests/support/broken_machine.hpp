@@ -8,15 +8,15 @@
 
 namespace test_support {
 
-/// A machine on which one wait for a transfer is left out.
+/// A machine that leaves out one wait for a transfer.
 class BrokenMachine : public testbench::NativeMachine {
  public:
-  /// @param dropped_wait this wait for a transfer returns at once and takes no signal; the first is 0, -1
-  /// none
+  /// @param dropped_wait number of the wait for a transfer, from 0, that returns at once and takes no signal;
+  /// -1 for none
   BrokenMachine(int num_pes, int poly_bytes, std::uint64_t mono_bytes, int dropped_wait)
       : NativeMachine(num_pes, poly_bytes, mono_bytes), dropped_wait_(dropped_wait) {}
 
-  /// Waits on semaphores up to this one are not for transfers.
+  /// Semaphores up to this one are not signalled by transfers.
   void spare_semaphores_to(cn::Semaphore last) { spared_ = last.index; }
 
   void sem_wait(cn::Semaphore semaphore) override {
@@ -29,8 +29,8 @@ class BrokenMachine : public testbench::NativeMachine {
     timed_ = on;
     NativeMachine::timed(on);
   }
-  /// Numbers of the waits in timed work that the firmware cannot do without: up to the last on a semaphore
-  /// that ends a transfer with data. What comes after has nothing to wait for.
+  /// Numbers of the waits in timed work that the firmware needs: on each semaphore, all waits up to the last
+  /// for a transfer that moves data.
   const std::vector<int>& needed_waits() const { return needed_waits_; }
 
  protected:
@@ -41,13 +41,13 @@ class BrokenMachine : public testbench::NativeMachine {
 
  private:
   struct Waits {
-    std::deque<bool> moves_data;  ///< a transfer that was not waited for; signals come in their order
+    std::deque<bool> moves_data;  ///< transfers that have not been waited for, in the order of their signals
     std::vector<int> perhaps_needed;
   };
 
   /// Whether the wait counts among the timed waits for transfers.
   bool note_wait(Waits& waits) {
-    if (waits.moves_data.empty()) return false;  // the machine stops it
+    if (waits.moves_data.empty()) return false;  // the machine reports this wait as a fault
     const bool moved_data = waits.moves_data.front();
     waits.moves_data.pop_front();
     if (!timed_) return false;

@@ -11,25 +11,27 @@
 
 namespace test_support {
 
-/// How a run of the firmware is broken on purpose.
+/// A deliberate fault in a run of the firmware.
 struct Mutation {
-  int dropped_wait = -1;  ///< this wait for a transfer returns at once and takes no signal, the first is 0
+  int dropped_wait =
+      -1;  ///< number of the wait for a transfer, from 0, that returns at once and takes no signal
   std::function<void(path_tracer::Layout&)> layout = [](path_tracer::Layout&) {};
 };
 
 struct CheckedRun {
-  std::string fault;           ///< empty when the firmware came to its end
+  std::string fault;           ///< message of the fault; empty if the firmware ended
   std::vector<int> waits;      ///< BrokenMachine::needed_waits()
-  std::uint64_t requests = 0;  ///< that moved data
+  std::uint64_t requests = 0;  ///< number of requests that moved data
 };
 
-/// The whole path tracer, natively, under the hazard checker.
+/// Runs the whole path tracer natively under the hazard checker.
 CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::ProgramConfig& config, int num_pes,
                        int samples = 2, const Mutation& mutation = {});
 
-/// Twelve triangles that all emit, and rays that miss nothing; 6 x 4 pixels.
+/// Twelve triangles that all emit, in a scene that no ray leaves; 6 x 4 pixels.
 testbench::Scene small_scene();
-/// Most of its paths end at once, so that radiance has several blocks of them a pass; 9 x 7 pixels.
+/// A scene in which most paths end at once, so that radiance has several blocks of paths per pass; 9 x 7
+/// pixels.
 testbench::Scene open_scene();
 
 inline path_tracer::ProgramConfig checked_program(path_tracer::Program program, int n, int bin_blocks = 4) {
@@ -37,7 +39,7 @@ inline path_tracer::ProgramConfig checked_program(path_tracer::Program program, 
   config.program = program;
   config.n = n;
   config.bin_blocks = bin_blocks;
-  config.slot_vertices = 4;  // many paths are folded
+  config.slot_vertices = 4;  // small slots, so that many paths are folded
   config.max_survival = 0.9;
   return config;
 }
@@ -45,7 +47,7 @@ inline path_tracer::ProgramConfig checked_program(path_tracer::Program program, 
 inline constexpr path_tracer::Traversal kTreeTraversals[] = {
     path_tracer::Traversal::temporary_bin, path_tracer::Traversal::refill, path_tracer::Traversal::lock_step};
 
-/// The same through a tree of small pieces, so that rays load often.
+/// The same with a tree of small pieces, so that rays load often.
 inline path_tracer::ProgramConfig checked_program(path_tracer::Program program,
                                                   path_tracer::Traversal traversal, int n,
                                                   int bin_blocks = 4) {

@@ -6,7 +6,7 @@
 
 namespace test_support {
 
-/// Counts of samples in bins whose probabilities are known.
+/// A chi-square test: counts of samples in bins with known probabilities.
 class ChiSquare {
  public:
   explicit ChiSquare(std::vector<double> probabilities)
@@ -17,8 +17,8 @@ class ChiSquare {
 
   void add(std::size_t bin) { ++counts_.at(bin), ++samples_; }
 
-  /// The statistic as a number of standard deviations from its mean (Wilson and Hilferty 1931). Above 4: the
-  /// samples are not of this distribution. Below -4: they are not random.
+  /// The statistic as a number of standard deviations from its mean (Wilson and Hilferty 1931). Above 4, the
+  /// samples do not have this distribution; below -4, they are not random.
   double deviation() const {
     double statistic = 0;
     for (std::size_t i = 0; i < counts_.size(); ++i) {

@@ -12,10 +12,10 @@
 #include "model/config/chip_file.hpp"
 #include "model/config/chip_parameters.hpp"
 
-/// What the tests of chip parameters, presets and files share.
+/// Shared by the tests of chip parameters, presets and files.
 namespace model {
 
-/// The message of the ConfigError that `act` throws; "" and a failure if it throws none.
+/// The message of the ConfigError that `act` throws; "" and a test failure if it throws none.
 template <class Act>
 std::string error_of(Act act) {
   try {
@@ -28,7 +28,7 @@ std::string error_of(Act act) {
   return {};
 }
 
-/// A TOML file in the test's temporary directory, removed at the end.
+/// A TOML file in the test's temporary directory. The destructor removes it.
 class TomlFile {
  public:
   explicit TomlFile(std::string_view content) {
@@ -47,7 +47,8 @@ class TomlFile {
   std::string path_;
 };
 
-/// The message of loading a file of `content`, whose name it must begin with and which becomes "FILE".
+/// The message of the error when a file with `content` is loaded. The message must begin with the file's
+/// name, which is replaced by "FILE".
 inline std::string load_error(std::string_view content) {
   const TomlFile file(content);
   std::string message = error_of([&] { load_chip(file.path()); });
@@ -56,7 +57,7 @@ inline std::string load_error(std::string_view content) {
   return at == 0 ? "FILE" + message.substr(file.path().size()) : message;
 }
 
-/// Keys whose values differ; "preset" if the names do.
+/// The keys whose values differ, and "preset" if the names of the presets differ.
 inline std::vector<std::string> differences(const ChipConfig& a, const ChipConfig& b) {
   std::vector<std::string> keys;
   if (a.preset != b.preset) keys.push_back("preset");
@@ -66,7 +67,7 @@ inline std::vector<std::string> differences(const ChipConfig& a, const ChipConfi
   return keys;
 }
 
-/// Allowed values of a parameter, none of them the default.
+/// Allowed values of a parameter other than its default.
 inline std::vector<ParameterValue> other_values(const ParameterInfo& parameter) {
   std::vector<ParameterValue> values;
   if (const auto* integers = std::get_if<IntegerRange>(&parameter.allowed)) {

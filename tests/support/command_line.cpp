@@ -11,7 +11,7 @@
 namespace test_support {
 namespace {
 
-/// A run that takes longer is ended by a signal: it was not meant to start.
+/// A longer run is ended by a signal, because the test expected it not to start.
 constexpr unsigned kMostSeconds = 100;
 
 std::filesystem::path output_of(pid_t child, const std::filesystem::path& directory, const char* name) {

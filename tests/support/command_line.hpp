@@ -9,16 +9,16 @@
 
 namespace test_support {
 
-/// What a run of the program left.
+/// The result of a run of the program.
 struct CommandResult {
-  int exit_code = -1;  ///< -1 when a signal ended it
+  int exit_code = -1;  ///< -1 if a signal ended the program
   std::string out;
   std::string error;
 
   std::vector<std::string> error_lines() const;
 };
 
-/// Runs build's csx600 in an empty directory of its own, which is removed at the end.
+/// Runs the csx600 of this build in a new, empty directory, which the destructor removes.
 class CommandLineFixture : public testing::Test {
  protected:
   CommandLineFixture();
@@ -26,13 +26,13 @@ class CommandLineFixture : public testing::Test {
 
   CommandResult run(const std::vector<std::string>& arguments);
 
-  /// Starts the program; its output goes to files outside the directory.
+  /// Runs the program. Its output goes to files outside the directory.
   pid_t start(const std::vector<std::string>& arguments);
   CommandResult finish(pid_t child);
 
   void write(const std::string& name, const std::string& text) const;
   std::string read(const std::string& name) const;
-  /// Everything in the directory, sorted.
+  /// Names of all files in the directory, sorted.
   std::vector<std::string> files() const;
 
   const std::filesystem::path& directory() const { return directory_; }
@@ -41,7 +41,7 @@ class CommandLineFixture : public testing::Test {
   std::filesystem::path directory_;
 };
 
-/// A triangle that emits, seen from the front, as scene.toml, mesh.obj and mesh.mtl.
+/// Writes a scene with one emitting triangle, seen from the front: scene.toml, mesh.obj and mesh.mtl.
 struct SceneFiles {
   std::string toml =
       "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nvertical_fov_degrees = 40\n"

@@ -14,7 +14,7 @@ using cn::IssueCounts;
 
 inline constexpr model::Cycles kStart = 1000;
 
-/// A kernel that issues what the test says and computes nothing.
+/// A kernel that issues the instructions that the test sets and computes nothing.
 struct FakeArguments {
   IssueCounts issued;
 };
@@ -35,7 +35,7 @@ inline FakeArguments issues(InstructionClass instruction, std::uint64_t times) {
   return arguments;
 }
 
-/// A whole small chip of 8 PEs, 1 ns a cycle, that runs firmware of the test from cycle kStart on.
+/// A whole small chip with 8 PEs and a cycle of 1 ns, which runs firmware of the test from cycle kStart on.
 class ControlBench : public SystemCFixture {
  protected:
   using Firmware = std::function<void(cn::Machine&)>;
@@ -64,7 +64,8 @@ class ControlBench : public SystemCFixture {
   model::Cycles spent(model::CycleCause cause) const { return statistics()[cause]; }
   std::uint8_t* mono() { return chip->mono_ddr->memory().data(); }
 
-  /// 8 x 32 bytes without gaps: 100 setup + 8 x (10 + 4) = 212 cycles in the engine, either way.
+  /// A transfer of 8 x 32 bytes without gaps: 100 setup + 8 x (10 + 4) = 212 cycles in the engine, in both
+  /// directions.
   static constexpr model::Cycles kRequestCycles = 212;
   static void load(cn::Machine& machine, cn::Semaphore done,
                    const cn::LaneMask& enabled = cn::LaneMask::first(8)) {

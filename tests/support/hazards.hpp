@@ -9,7 +9,7 @@
 
 namespace test_support {
 
-/// What `run` is stopped with; empty when it is not.
+/// The message of the fault that stops `run`; empty if none does.
 template <class Run>
 std::string fault_of(Run&& run) {
   try {

@@ -12,9 +12,9 @@
 
 namespace test_support {
 
-/// cn::Machine on which transfers are as late as they may be: data and addresses move when somebody waits for
-/// them, and until then there is garbage where they will arrive. With `eagerness`, some finish of their own
-/// accord, in any order.
+/// cn::Machine whose transfers are as late as allowed: data and addresses move only when the firmware waits
+/// for them, and until then the destination holds garbage. With `eagerness`, some transfers finish before
+/// they are waited for, in any order.
 class LateMachine : public cn::Machine {
  public:
   LateMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, double eagerness = 0)
@@ -22,18 +22,18 @@ class LateMachine : public cn::Machine {
 
   std::uint8_t* mono() { return mono_.data(); }
 
-  /// Called when the firmware waits for a semaphore that no transfer will signal: the host's turn, at the
-  /// latest.
+  /// Called when the firmware waits for a semaphore that no transfer will signal. The host must react now at
+  /// the latest.
   std::function<void(cn::Semaphore)> host;
-  /// Called when the firmware signals: a prompt host's turn.
+  /// Called when the firmware signals, for a host that reacts promptly.
   std::function<void(cn::Semaphore)> on_signal;
 
-  /// What was asked for: "m2p load 0", "wait load 0", "signal results ready".
+  /// The calls of the firmware, for example "m2p load 0", "wait load 0", "signal results ready".
   std::vector<std::string> calls;
   std::uint64_t mono_instructions = 0;
 
-  /// Faults when a transfer writes poly memory that one under way uses, or reads what one under way writes,
-  /// of a PE that both serve.
+  /// Throws a fault if, in a PE that takes part in both, a transfer writes poly memory that an outstanding
+  /// transfer uses, or reads what one writes.
   bool guards_buffers = false;
 
   std::size_t under_way() const { return pending_.size(); }
@@ -58,7 +58,7 @@ class LateMachine : public cn::Machine {
     finish_some();
   }
   void issue_mono(std::uint64_t instructions) override { mono_instructions += instructions; }
-  /// Untimed work sees what was started before it as done.
+  /// Finishes all outstanding transfers, since untimed work may use their data.
   void timed(bool on) override {
     while (!on && finish_one([](const cn::Transfer&) { return true; })) {
     }

@@ -5,12 +5,12 @@
 
 #include "tests/support/strip_fixture.hpp"
 
-/// Random structured programs, run twice: by cn, strip by strip, and by an interpreter that holds all PEs in
-/// lock step as the chip does. Both must leave the same variables and have issued the same.
+/// Random structured programs that run twice: by cn, strip by strip, and by an interpreter that keeps all PEs
+/// in lock step as the chip does. Both must leave the same variables and issue the same instructions.
 namespace test_support {
 
-inline constexpr int kVariables = 4;     ///< 32-bit ones, that statements compute with
-inline constexpr int kMaxLoopDepth = 3;  ///< one more variable for each, that counts passes down
+inline constexpr int kVariables = 4;     ///< 32-bit variables that statements use
+inline constexpr int kMaxLoopDepth = 3;  ///< each level has one more variable, which counts its passes
 
 struct Statement;
 using Block = std::vector<Statement>;
@@ -20,7 +20,7 @@ struct Statement {
   int target = 0;
   int left = 0;
   int right = 0;
-  std::int32_t constant = 0;  ///< assign: added; conditions: compared with (variable & 7)
+  std::int32_t constant = 0;  ///< assignment: added; condition: compared with (variable & 7)
   int loop_depth = 0;
   Block body;
   Block otherwise;
@@ -58,14 +58,14 @@ class ProgramGenerator {
   std::mt19937 random_;
 };
 
-/// Values of all variables of all PEs, and what was issued.
+/// Values of all variables of all PEs, and the issued instructions.
 struct Outcome {
   std::vector<PerPe<std::int32_t>> variables;
   cn::IssueCounts issued;
-  std::uint64_t lane_instructions = 0;  ///< instructions times the PEs that entered the region they are in
+  std::uint64_t lane_instructions = 0;  ///< sum over instructions of the PEs that entered their region
 };
 
-/// The program as Cn code.
+/// Runs the program as Cn code.
 class CnRun {
  public:
   explicit CnRun(std::vector<PerPe<std::int32_t>>& variables) : memory_(variables) {
@@ -114,7 +114,7 @@ class CnRun {
   cn::poly<std::int32_t> variables_[kVariables + kMaxLoopDepth];
 };
 
-/// The program as the chip runs it: one instruction stream, an enable stack a PE.
+/// Interprets the program as the chip runs it: one instruction stream, and one enable stack per PE.
 class LockStepRun {
  public:
   LockStepRun(std::vector<PerPe<std::int32_t>> variables, const cn::LaneMask& enabled) {

@@ -16,7 +16,7 @@ inline Triangle triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dv
   return {{a, b, c}, 0};
 }
 
-/// Triangles of about `size` all over a cube of `extent`.
+/// Triangles of about `size`, scattered over a cube of `extent`.
 inline std::vector<Triangle> soup(int count, double extent, double size, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
@@ -31,15 +31,15 @@ inline std::vector<Triangle> soup(int count, double extent, double size, unsigne
   return triangles;
 }
 
-/// What builders and traversals stumble over.
+/// Meshes that are hard for builders and traversals.
 enum class Mesh {
   one,
   coplanar,  ///< a flat grid along two axes
   soup,
-  needles,     ///< long and thin, through each other
-  duplicates,  ///< the same triangle, over and over
-  point,       ///< no extent, all in one place
-  line,        ///< no area, along one axis
+  needles,     ///< long, thin triangles that intersect
+  duplicates,  ///< copies of one triangle
+  point,       ///< triangles without extent, in one place
+  line,        ///< triangles without area, along one axis
   scales,      ///< a fine mesh in a coarse one, 10^5 times larger ("teapot in a stadium")
   huge,
   tiny,
@@ -101,7 +101,7 @@ inline std::vector<Triangle> mesh(Mesh kind) {
   return {};
 }
 
-/// As the boxes of a tree's nodes are told.
+/// Scales triangles to the unit of a format's nodes.
 inline std::vector<testbench::Triangle> in_nodes_unit(std::vector<testbench::Triangle> triangles,
                                                       path_tracer::NodeFormat format) {
   testbench::Box all;

@@ -10,7 +10,7 @@
 
 namespace test_support {
 
-/// Mono memory after a run without a clock.
+/// Mono memory after a native run.
 inline std::vector<std::uint8_t> run_natively(const testbench::ExampleRun& run, int num_pes) {
   testbench::NativeMachine machine(num_pes, 6144, run.mono.size());
   std::memcpy(machine.mono(), run.mono.data(), run.mono.size());
@@ -18,7 +18,7 @@ inline std::vector<std::uint8_t> run_natively(const testbench::ExampleRun& run, 
   return {machine.mono(), machine.mono() + machine.mono_bytes()};
 }
 
-/// What `run.check` says of `mono`; empty when it is right.
+/// The message of `run.check` for `mono`; empty if the results are right.
 inline std::string verdict(const testbench::ExampleRun& run, const std::vector<std::uint8_t>& mono) {
   try {
     run.check(mono.data());

@@ -7,10 +7,10 @@
 
 namespace test_support {
 
-/// What the command line would run, on 96 PEs, as wide as this machine can.
+/// A configuration like the command line's, with 96 PEs and the widest level of this machine.
 testbench::RenderOptions render_options(path_tracer::Program program, int samples);
 
-/// The results as the firmware leaves them in mono memory, one a path, without a film in between.
+/// The results of each path as the firmware leaves them in mono memory, without a film.
 std::vector<path_tracer::RadianceRecord> native_paths(const testbench::Scene& scene,
                                                       const testbench::RenderOptions& options);
 

@@ -6,7 +6,7 @@
 
 namespace test_support {
 
-/// All that the firmware has kernels for.
+/// All layouts of nodes for which the firmware has kernels.
 inline std::vector<path_tracer::NodeLayout> node_layouts() {
   using path_tracer::NodeFormat;
   std::vector<path_tracer::NodeLayout> layouts;

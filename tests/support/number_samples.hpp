@@ -51,7 +51,7 @@ T random_value(std::mt19937_64& random) {
   }
 }
 
-/// Every pair of extremes, then random pairs.
+/// Pairs of all extreme values, then random pairs.
 template <class T>
 inline void fill_pairs(std::vector<T>& a, std::vector<T>& b) {
   const std::vector<T> values = extremes<T>();

@@ -41,7 +41,7 @@ class Driver : public sc_core::sc_module {
   }
 };
 
-/// PIO engine, network, SRAM and a memory, driven by the test in the place of the control unit.
+/// PIO engine, network, SRAM and a memory. The test drives them in place of the control unit.
 class PioBench : public SystemCFixture {
  protected:
   void build(const model::ChipConfig& chip) {
@@ -69,7 +69,7 @@ class PioBench : public SystemCFixture {
     EXPECT_EQ(at_engine.active(), 0u);
     EXPECT_EQ(at_memory.active(), 0u);
   }
-  /// With a memory of another make in the place of MonoDdr.
+  /// A bench with another memory in place of MonoDdr.
   void build_with_minimal_memory(const model::ChipConfig& chip, double latency_nanoseconds) {
     prepare(chip);
     minimal = std::make_unique<MinimalMemory>("minimal", chip.ddr.size_bytes,
@@ -102,7 +102,7 @@ class PioBench : public SystemCFixture {
                             int semaphore = 0) {
     return {cn::Direction::poly_to_mono, {0, bytes}, to, enabled, {semaphore}};
   }
-  /// Contiguous, 8 x 32 bytes: 100 setup + 8 x (10 + 4) = 212 cycles in the engine.
+  /// A contiguous transfer of 8 x 32 bytes: 100 setup + 8 x (10 + 4) = 212 cycles in the engine.
   model::Cycles enqueue_read(model::Cycles now, int semaphore) {
     return engine->enqueue(read(cn::MonoPlaces::array(0, 32), 32, kAll, semaphore), now);
   }
@@ -113,7 +113,7 @@ class PioBench : public SystemCFixture {
     while (engine->serve_next()) {
     }
   }
-  /// The only signal of a semaphore so far; serves what waits.
+  /// Serves all queued requests and returns the cycle of the semaphore's only signal so far.
   model::Cycles signal(int semaphore = 0) {
     serve_all();
     EXPECT_EQ(semaphores.signals[semaphore].size(), 1u) << "semaphore " << semaphore;

@@ -7,8 +7,8 @@
 
 namespace test_support {
 
-/// All of the SRAMs, word w of PE p at [w * num_pes + p], however the memory keeps them.
-/// @param bytes_per_pe what the memory was made with
+/// The words of all SRAMs, with word w of PE p at [w * num_pes + p], whatever the layout of PolyMemory.
+/// @param bytes_per_pe as given to the memory's constructor
 inline std::vector<std::uint64_t> poly_words(const cn::PolyMemory& memory, int bytes_per_pe) {
   std::vector<std::uint64_t> words;
   for (int offset_bytes = 0; offset_bytes < bytes_per_pe; offset_bytes += 8)

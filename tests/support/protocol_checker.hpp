@@ -11,10 +11,10 @@
 
 namespace test_support {
 
-/// Stands between an initiator and a target, passes everything on and notes what breaks the rules of the base
-/// protocol (IEEE 1666-2011, 15.2.6 and 14.5): order of phases, one request and one response at a time on a
-/// socket, one response a request, times that do not go back, a response status, payloads with a memory
-/// manager that are alive.
+/// Sits between an initiator and a target, passes everything on and records violations of the base protocol
+/// (IEEE 1666-2011, 15.2.6 and 14.5): order of phases, one request and one response at a time on a socket,
+/// one response per request, times that do not go back, a response status, live payloads with a memory
+/// manager.
 class ProtocolChecker : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<ProtocolChecker> in{"in"};
@@ -30,7 +30,7 @@ class ProtocolChecker : public sc_core::sc_module {
   }
 
   const std::vector<std::string>& violations() const { return violations_; }
-  /// Transactions that have begun and are not over.
+  /// Number of transactions that have begun and not ended.
   std::size_t active() const { return active_.size(); }
   std::size_t transactions() const { return transactions_; }
   std::size_t most_active() const { return most_active_; }
@@ -40,7 +40,7 @@ class ProtocolChecker : public sc_core::sc_module {
   enum class State { requested, accepted, responding };
   struct Transaction {
     State state = State::requested;
-    sc_core::sc_time latest;  ///< phase
+    sc_core::sc_time latest;  ///< time of the latest phase
   };
 
   void expect(bool holds, const char* rule) {
@@ -93,7 +93,7 @@ class ProtocolChecker : public sc_core::sc_module {
       end_request(payload, delay);
     } else if (phase == tlm::BEGIN_RESP) {
       expect(active_.count(&payload) == 1, "a response answers a request");
-      if (is_in(payload, State::requested)) end_request(payload, delay);  // implied
+      if (is_in(payload, State::requested)) end_request(payload, delay);  // BEGIN_RESP implies END_REQ
       begin_response(payload, delay);
     } else {
       expect(false, "backward phases are END_REQ and BEGIN_RESP");

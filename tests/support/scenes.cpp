@@ -38,7 +38,7 @@ void add_triangle(Scene& scene, const glm::dvec3& a, const glm::dvec3& b, const 
   scene.triangles.push_back({{a, b, c}, material});
 }
 
-/// Counter-clockwise when seen from the front.
+/// Adds two triangles, counter-clockwise as seen from the front.
 void add_square(Scene& scene, const std::array<glm::dvec3, 4>& corners, std::int32_t material) {
   add_triangle(scene, corners[0], corners[1], corners[2], material);
   add_triangle(scene, corners[0], corners[2], corners[3], material);
@@ -66,7 +66,7 @@ void add_plane_and_light(Scene& scene, const PlaneAndLight& values) {
              light);
 }
 
-/// Eight units of length across the film's height at the light.
+/// At the light's distance the film's height covers eight units of length.
 Camera looking_at_light(double camera_height) {
   const double distance = std::abs(camera_height - PlaneAndLight::kLightHeight);
   Camera camera = looking({0, camera_height, 0}, {0, PlaneAndLight::kLightHeight, 0}, {0, 0, 1}, 0);
@@ -122,7 +122,7 @@ Scene closed_cube(double albedo, double emission, FilmSize film) {
     for (const double side : {-1.0, 1.0}) {
       glm::dvec3 normal(0.0);
       glm::dvec3 u(0.0);
-      normal[axis] = -side;  // inwards
+      normal[axis] = -side;  // points inwards
       u[(axis + 1) % 3] = 1.0;
       const glm::dvec3 v = glm::cross(normal, u);
       const glm::dvec3 centre = -normal;

@@ -21,7 +21,7 @@ std::vector<Triangle> scaled(std::vector<Triangle> triangles, double factor) {
   return triangles;
 }
 
-/// Rectangles across the axes, some side by side, some through each other; all boxes are flat.
+/// Rectangles across the axes, some side by side, some intersecting. All their boxes are flat.
 std::vector<Triangle> flats() {
   std::vector<Triangle> triangles;
   for (int axis = 0; axis < 3; ++axis)
@@ -37,7 +37,7 @@ std::vector<Triangle> flats() {
   return triangles;
 }
 
-/// One around the other, all about one point.
+/// Nested triangles around one point.
 std::vector<Triangle> nested() {
   std::vector<Triangle> triangles;
   for (const Triangle& triangle : soup(1, 0.0, 1.0, 9))
@@ -45,7 +45,7 @@ std::vector<Triangle> nested() {
   return triangles;
 }
 
-/// In one plane across no axis, one over the other.
+/// Overlapping triangles in one plane that is parallel to no axis.
 std::vector<Triangle> slanted() {
   std::vector<Triangle> triangles = soup(60, 1.0, 0.5, 10);
   const glm::dvec3 u = glm::normalize(glm::dvec3(1, 2, 3));
@@ -55,7 +55,8 @@ std::vector<Triangle> slanted() {
   return triangles;
 }
 
-/// A mesh, or as much of it as time allows: rays through one heap of needles or duplicates test all of them.
+/// The mesh, cut to a size that takes little time if rays test every triangle, as with needles and
+/// duplicates.
 std::vector<Triangle> some(Mesh mesh, std::size_t most) {
   std::vector<Triangle> triangles = test_support::mesh(mesh);
   if (triangles.size() > most) triangles.resize(most);

@@ -5,7 +5,7 @@
 
 #include "testbench/scene/scene.hpp"
 
-/// Meshes that are hard on searches for the nearest triangle, and scenes of them.
+/// Meshes that are hard for searches for the nearest triangle, and scenes made of them.
 namespace test_support {
 
 struct NamedMesh {
@@ -14,10 +14,11 @@ struct NamedMesh {
 };
 std::vector<NamedMesh> search_meshes();
 
-/// Lights that share edges, and coplanar triangles on them that share none.
+/// Lights that share edges, and coplanar triangles on them that share no edge.
 std::vector<testbench::Triangle> decals();
 
-/// The last three triangles shine; those without area are dropped, as the loader does.
+/// A scene of the triangles, of which the last three emit. Triangles without area are dropped, as the loader
+/// does.
 testbench::Scene scene_of(std::vector<testbench::Triangle> triangles);
 
 }  // namespace test_support

@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-/// Bounds for tests of random results: a test states how often it may fail although all is right.
+/// Bounds for tests of random results. A test states the probability of a false alarm, a failure although the
+/// code is right.
 namespace test_support {
 
-/// False alarms of a whole test.
+/// Probability of a false alarm of a whole test.
 inline constexpr double kFalseAlarm = 1e-6;
 
-/// The share of the false alarms that each of `tests` tests may have, whatever their dependence (Bonferroni).
+/// Probability of a false alarm that each of `tests` tests may have, whatever their dependence (Bonferroni).
 inline double per_test(double tests) {
   return kFalseAlarm / tests;
 }
 
-/// z with P(|N(0, 1)| > z) = probability.
+/// Returns z with P(|N(0, 1)| > z) = probability.
 inline double normal_threshold(double probability) {
   double low = 0;
   double high = 40;
@@ -25,17 +26,17 @@ inline double normal_threshold(double probability) {
   return high;
 }
 
-/// Bounds P(a count of Binomial(trials, probability) is as far from its mean as `count`, to the same side)
-/// from above (Chernoff; Hoeffding 1963, theorem 1). Holds for any number of trials.
+/// An upper bound of P(a count of Binomial(trials, probability) is at least as far from its mean as `count`,
+/// on the same side) (Chernoff; Hoeffding 1963, theorem 1). Holds for any number of trials.
 inline double binomial_tail_bound(double count, double trials, double probability) {
   const auto term = [](double a, double b) { return a > 0 ? a * std::log(a / b) : 0.0; };
   const double share = count / trials;
   return std::exp(-trials * (term(share, probability) + term(1 - share, 1 - probability)));
 }
 
-/// How far the mean of `samples` values within [low, low + range] may be from its expectation, except with
-/// the given probability; `variance` is that of the sample (Maurer and Pontil 2009, theorem 4, both sides).
-/// Holds for any distribution and any number of samples.
+/// The largest distance of the mean of `samples` values within [low, low + range] from its expectation,
+/// except with the given probability; `variance` is the sample variance (Maurer and Pontil 2009, theorem 4,
+/// both sides). Holds for any distribution and any number of samples.
 inline double bounded_mean_error(double variance, double samples, double range, double probability) {
   const double l = std::log(4 / probability);
   return std::sqrt(2 * variance * l / samples) + 7 * range * l / (3 * (samples - 1));

@@ -15,7 +15,7 @@ inline bool operator!=(const IssueCounts& a, const IssueCounts& b) {
   return !(a == b);
 }
 
-/// Only what was issued, by name, so that a failed comparison can be read.
+/// The issued instructions by name, without zeros, so that a failed comparison is readable.
 inline void PrintTo(const IssueCounts& counts, std::ostream* out) {
   *out << "{";
   for (std::size_t i = 0; i < kInstructionClasses; ++i)
@@ -27,7 +27,7 @@ inline void PrintTo(const IssueCounts& counts, std::ostream* out) {
 
 namespace test_support {
 
-/// A variable of every PE, as the test sees it.
+/// A variable of every PE as the test sees it.
 template <class T>
 using PerPe = std::vector<T>;
 
@@ -37,7 +37,7 @@ inline cn::IssueCounts counts(std::initializer_list<std::pair<cn::InstructionCla
   return sum;
 }
 
-/// The strip's part of `values`; issues nothing.
+/// The strip's part of `values`, without issuing instructions.
 template <class T>
 [[gnu::noinline]] cn::poly<T> load(const PerPe<T>& values) {
   using Lane = typename cn::poly<T>::Lane;
@@ -45,8 +45,8 @@ template <class T>
       [&](int i) { return static_cast<Lane>(values[std::size_t(cn::strip.first_pe + i)]); }));
 }
 
-/// All PEs of the strip, enabled or not; a lane must hold a value of T, not what an operation left above its
-/// bits.
+/// Stores the values of all PEs of the strip, enabled or not. Checks that each lane holds a value of T
+/// without stray bits above it.
 template <class T>
 [[gnu::noinline]] void store(PerPe<T>& values, const cn::poly<T>& poly) {
   for (int i = 0; i < cn::kStripLanes; ++i) {
@@ -72,7 +72,7 @@ void call(const Program& program) {
   program();
 }
 
-/// Runs callables as kernels on an array of its own.
+/// A fixture that runs callables as kernels on its own array.
 class StripFixture : public testing::Test {
  protected:
   explicit StripFixture(int num_pes = 24) : memory(num_pes, 1024) {}
@@ -86,7 +86,7 @@ class StripFixture : public testing::Test {
   const cn::IssueTree& run(const Program& program) {
     return run(cn::LaneMask::first(num_pes()), program);
   }
-  /// What `program` issues in all when every PE is enabled.
+  /// The total of the instructions that `program` issues with every PE enabled.
   template <class Program>
   cn::IssueCounts issued_by(const Program& program) {
     return run(program).total();

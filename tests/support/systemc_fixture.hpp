@@ -6,9 +6,8 @@
 
 namespace test_support {
 
-/// Each test elaborates its own modules: SystemC allows none once a simulation has begun, so every test
-/// begins with a context of its own. The context before leaks (about 5 KB); deleting it would take the
-/// modules' names along.
+/// Gives each test a new SystemC context, because SystemC allows no new modules once a simulation has begun.
+/// The previous context leaks (about 5 KB), since deleting it would also delete the modules' names.
 class SystemCFixture : public testing::Test {
  protected:
   SystemCFixture() {
@@ -16,7 +15,7 @@ class SystemCFixture : public testing::Test {
     sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
   }
 
-  /// Completes binding without letting time pass.
+  /// Completes the binding of ports without advancing time.
   static void elaborate() { sc_core::sc_start(sc_core::SC_ZERO_TIME); }
 };
 

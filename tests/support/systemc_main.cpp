@@ -8,8 +8,7 @@ namespace {
 // SystemC prints its banner before sc_main runs.
 [[maybe_unused]] const int banner_off = setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
 
-/// Any complaint of the kernel or of a socket fails the test that caused it; errors also leave the call that
-/// did.
+/// Every report of the SystemC kernel or of a socket fails the current test. Errors are thrown as well.
 void fail_test(const sc_core::sc_report& report, const sc_core::sc_actions& actions) {
   if (report.get_severity() < sc_core::SC_WARNING || actions == sc_core::SC_DO_NOTHING) return;
   ADD_FAILURE() << "SystemC report " << report.get_msg_type() << ": " << report.get_msg();

@@ -4,8 +4,9 @@
 
 namespace test_support {
 
-/// A small chip of round numbers, so that tests can add up cycles by hand: 1 ns a cycle, 6 cycles from an
-/// initiator to the DDR, links of 8 bytes a cycle, a DDR of 16 with 20 cycles to a page hit and 30 to a miss.
+/// A small chip with round numbers, so that tests can compute cycles by hand: a cycle of 1 ns, 6 cycles from
+/// an initiator to the DDR, links of 8 bytes per cycle, and a DDR of 16 bytes per cycle with 20 cycles for a
+/// page hit and 30 for a miss.
 inline model::ChipConfig test_chip(int pes = 8) {
   model::ChipConfig config{};
   config.preset = "test";

@@ -11,8 +11,8 @@
 
 namespace test_support {
 
-/// Rays of the kinds that a scene's renders bring, and of those that rounding is hard on: along edges,
-/// through vertices, within planes, with components of zero. They start within the scene's box.
+/// Random rays of the kinds that occur in renders, and of kinds that are sensitive to rounding: along edges,
+/// through vertices, within planes, with components of zero. All start within the scene's box.
 class TestRays {
  public:
   TestRays(const testbench::Scene& scene, unsigned seed)
@@ -41,7 +41,7 @@ class TestRays {
       case 3:
         direction = on_edge(any_triangle()) - origin;
         break;
-      case 4: {  // along an edge, from a vertex or a point of it
+      case 4: {  // along an edge, from one of its points or vertices
         origin = one_in(2) ? vertex(from) : on_edge(from);
         direction = edge(from) * (one_in(2) ? 1.0 : -1.0);
         break;
@@ -55,17 +55,17 @@ class TestRays {
         direction[axis] = (box_.upper[axis] - box_.lower[axis]) * (up ? 1.0 : -1.0);
         break;
       }
-      case 6:  // as paths go on
+      case 6:  // from a surface, as the segments of a path
         origin = on(from);
         direction = (one_in(2) ? anywhere() : vertex(any_triangle())) - origin;
         ray.left_face = faces_[from];
         break;
-      case 7:  // within a triangle's plane, or nearly
+      case 7:  // within a triangle's plane, or nearly so
         origin = on(from);
         direction = edge(from) * number(-1, 1) + edge(from) * number(-1, 1);
         if (one_in(2)) direction += (anywhere() - origin) * 1e-14;
         break;
-      default:  // towards what lies right ahead of a vertex
+      default:  // from a vertex to a vertex
         origin = vertex(from);
         direction = vertex(any_triangle()) - origin;
         break;
@@ -79,7 +79,7 @@ class TestRays {
     return ray;
   }
 
-  /// Towards a point on one of the light's triangles.
+  /// A shadow ray towards a point on one of the light's triangles.
   path_tracer::RayRecord shadow_ray(const std::vector<std::size_t>& light) {
     path_tracer::RayRecord ray;
     const std::size_t from = any_triangle();

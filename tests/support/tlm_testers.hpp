@@ -12,7 +12,7 @@
 
 namespace test_support {
 
-/// Sends single transactions and says what came back.
+/// An initiator that sends single transactions and keeps their responses.
 class TestInitiator : public sc_core::sc_module {
  public:
   tlm_utils::simple_initiator_socket<TestInitiator> socket{"socket"};
@@ -25,7 +25,7 @@ class TestInitiator : public sc_core::sc_module {
   tlm::tlm_dmi dmi;
   int invalidations = 0;
 
-  /// Returns the delay out; the response is in `transaction`.
+  /// Returns the delay after the call; `transaction` holds the response.
   sc_core::sc_time send(tlm::tlm_command command, std::uint64_t address, void* data, std::size_t bytes,
                         sc_core::sc_time delay) {
     prepare(command, address, data, bytes);
@@ -54,7 +54,7 @@ class TestInitiator : public sc_core::sc_module {
   void invalidated(sc_dt::uint64, sc_dt::uint64) { ++invalidations; }
 };
 
-/// The least a TLM-2.0 memory can be: a fixed latency, debug transport, no DMI, no extensions.
+/// A minimal TLM-2.0 memory: a fixed latency, debug transport, no DMI, no extensions.
 class MinimalMemory : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<MinimalMemory> socket{"socket"};
@@ -66,7 +66,7 @@ class MinimalMemory : public sc_core::sc_module {
   }
 
   std::vector<unsigned char> bytes;
-  std::map<std::uint64_t, sc_core::sc_time> extra_latency;  ///< by address
+  std::map<std::uint64_t, sc_core::sc_time> extra_latency;  ///< added to the latency, by address
   int reads = 0;
   int writes = 0;
 

@@ -21,7 +21,7 @@ using path_tracer::TriangleRecord;
 
 namespace {
 
-// Where arrays would lie in mono memory.
+// Addresses of the arrays in mono memory.
 constexpr MonoAddress kTriangles = 0x1000;
 constexpr MonoAddress kNodes = 0x300000040;
 constexpr MonoAddress kSurfaces = 0x500000080;
@@ -40,7 +40,7 @@ std::vector<Record> records_at(const testbench::MonoImage& image, MonoAddress fi
 
 }  // namespace
 
-/// A PE's SRAM.
+/// The layout of a PE's SRAM.
 struct RaySearch::Offsets {
   explicit Offsets(const TreeShape& shape) {
     int next = 0;
@@ -104,9 +104,9 @@ bool same(const SearchHit& a, const SearchHit& b) {
 RaySearch::RaySearch(path_tracer::Level level)
     : kernels_(path_tracer::kernels(level)), memory_(kPes, kPolyBytes) {}
 
-/// So that nobody gets along with what was left there.
+/// Overwrites SRAM, so that no kernel can depend on data left from earlier.
 void RaySearch::scramble(int used_bytes) {
-  constexpr std::uint64_t kNoNumber = 0x7ff4dead7fa0beef;  // neither as a double nor as a float
+  constexpr std::uint64_t kNoNumber = 0x7ff4dead7fa0beef;  // NaN, as a double and as a float
   for (int pe = 0; pe < kPes; ++pe)
     for (int offset_bytes = 0; offset_bytes < used_bytes; offset_bytes += 8)
       memory_.word(pe, offset_bytes) = kNoNumber;

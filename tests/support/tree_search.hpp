@@ -6,30 +6,31 @@
 #include "firmware/path_tracer/kernels/kernels.hpp"
 #include "testbench/mono_image/mono_image.hpp"
 
-/// Rays through a scene by the firmware's kernels alone: tested against every triangle, or through a tree of
-/// which a host in the place of the pipeline brings each PE what it asks for.
+/// Searches for hits of rays with the firmware's kernels alone: against every triangle, or through a tree
+/// whose data the test loads into each PE in place of the pipeline.
 namespace test_support {
 
-/// What the kernels want of a scene.
+/// The data of a scene that the kernels read.
 struct SearchScene {
   std::vector<path_tracer::TriangleRecord> triangles;  ///< in the scene's order
-  // Of the tree:
+  // The tree:
   path_tracer::TreeShape shape;
-  std::vector<path_tracer::TriangleRecord> leaves;  ///< behind them those of the lights, and room for a load
+  std::vector<path_tracer::TriangleRecord>
+      leaves;  ///< leaf by leaf, then those of the lights, then room for one more load
   std::vector<std::uint8_t> nodes;
   double reach = 0;
 };
 
-/// Both as the host writes them to mono memory.
+/// Triangles and tree as the host writes them to mono memory.
 SearchScene search_scene(const testbench::Scene& scene, const path_tracer::TreeShape& shape);
-/// Of no triangles, which no scene can have, as there is no light.
+/// A search scene without triangles. No scene is like this, because it would have no light.
 SearchScene empty_search_scene(const path_tracer::TreeShape& shape);
 
 struct SearchHit {
   std::int32_t number = -1;
   path_tracer::HitRecord record;
 };
-/// To the last bit.
+/// Whether two hits are equal to the last bit.
 bool same(const SearchHit& a, const SearchHit& b);
 
 class RaySearch {
@@ -38,20 +39,20 @@ class RaySearch {
 
   explicit RaySearch(path_tracer::Level level);
 
-  /// @param rays as many as there are PEs, or fewer
-  /// @param sieve of the scene's triangles, or nothing
+  /// @param rays at most one per PE
+  /// @param sieve sieve of the scene's triangles; nullptr for none
   std::vector<SearchHit> brute_force(const SearchScene& scene,
                                      const std::vector<path_tracer::RayRecord>& rays,
                                      const path_tracer::TriangleSieve* sieve = nullptr);
 
-  /// Half of the rays enter when the others are on their way. After each turn every ray goes on in another
-  /// PE, as from a bin, if they `move`.
+  /// Half of the rays enter the tree after the others have begun. With `move`, every ray continues in another
+  /// PE after each turn, as rays from a bin do.
   std::vector<SearchHit> through_tree(const SearchScene& scene,
                                       const std::vector<path_tracer::QueuedRay>& rays, bool move);
 
-  /// By the latest kernel.
+  /// The instructions that the latest kernel issued.
   const cn::IssueTree& issued() const { return issued_; }
-  std::uint64_t turns() const { return turns_; }  ///< of all rays so far
+  std::uint64_t turns() const { return turns_; }  ///< total of all rays so far
 
  private:
   struct Offsets;

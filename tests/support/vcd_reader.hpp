@@ -10,7 +10,7 @@
 
 namespace test_support {
 
-/// A value change dump, as a viewer understands it. Throws std::runtime_error for a file that is not one.
+/// Reads a value change dump as a viewer does. Throws std::runtime_error for any other file.
 class VcdReader {
  public:
   struct Change {
@@ -38,7 +38,7 @@ class VcdReader {
   const std::string& timescale() const { return timescale_; }
   std::uint64_t first_time() const { return first_time_; }
   std::uint64_t last_time() const { return last_time_; }
-  /// By dotted name, with the outermost scope.
+  /// The signal with a dotted name that begins with the outermost scope.
   const std::map<std::string, Signal>& signals() const { return signals_; }
   const Signal& signal(const std::string& path) const {
     const auto found = signals_.find(path);
@@ -52,7 +52,7 @@ class VcdReader {
       if (change.time <= time) value = change.value;
     return value;
   }
-  /// How long the signal has the value, from the first to the last time of the file.
+  /// Total time for which the signal has the value, between the first and the last time of the file.
   std::uint64_t time_at_value(const std::string& path, std::uint64_t value) const {
     const std::vector<Change>& changes = signal(path).changes;
     std::uint64_t sum = 0;

@@ -14,7 +14,7 @@ struct Ray {
   Vector direction;
 };
 
-/// One vector a PE.
+/// One vector per PE.
 inline cn::vec3<cn::poly<double>> load3(const PerPe<Vector>& vectors) {
   PerPe<double> parts[3];
   for (const Vector& v : vectors)

@@ -14,7 +14,7 @@
 
 namespace test_support {
 
-/// Stands for the control unit: reports ahead of time, then lets time pass.
+/// Stands in for the control unit: reports ahead of time, then advances time.
 class Reporter : public sc_core::sc_module {
  public:
   using Body = std::function<void(Reporter&)>;
@@ -93,7 +93,7 @@ inline std::uint64_t state(model::CycleCause cause) {
 
 using ChangeList = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
 
-/// (time in ps, value) of all changes, the initial value first.
+/// Time in ps and value of all changes, the initial value first.
 inline ChangeList changes(const VcdReader& vcd, const std::string& path) {
   ChangeList list;
   for (const auto& change : vcd.signal(path).changes) list.emplace_back(change.time, change.value);

@@ -1,5 +1,4 @@
-// The scene data of scenes/cornell_box: a renderer relies on a watertight, consistently wound box without
-// overlaps.
+// Tests the data of scenes/cornell_box: a watertight, consistently wound box without overlaps.
 
 #include <gtest/gtest.h>
 
@@ -82,8 +81,8 @@ TEST(CornellBox, camera_puts_the_red_wall_on_the_left) {
   }
 }
 
-// Two triangles share every edge, in opposite directions, except round the open front (z = 0) and the blocks'
-// feet.
+// Two triangles share every edge, in opposite directions, except around the open front (z = 0) and the
+// blocks' feet.
 TEST(CornellBox, is_closed_apart_from_the_front_and_the_feet_of_the_blocks) {
   const std::map<Edge, int> edges = directed_edges(cornell_box().triangles);
   int front_edges = 0;
@@ -104,8 +103,8 @@ TEST(CornellBox, is_closed_apart_from_the_front_and_the_feet_of_the_blocks) {
   EXPECT_EQ(foot_edges, 8);
 }
 
-// No vertex lies inside an edge of another triangle (the blocks' feet meet the floor's inside, not its
-// edges).
+// No vertex lies inside an edge of another triangle. (The blocks' feet lie inside the floor, not on its
+// edges.)
 TEST(CornellBox, has_no_t_junctions) {
   const Scene scene = cornell_box();
   std::set<Point> points;
@@ -126,7 +125,7 @@ TEST(CornellBox, has_no_t_junctions) {
   }
 }
 
-// Moller-Trumbore without culling: distance along the ray, or a negative number.
+// Moller-Trumbore without culling: the distance along the ray, or a negative number for a miss.
 double hit_distance(const Triangle& t, const glm::dvec3& origin, const glm::dvec3& direction) {
   const glm::dvec3 e1 = t.vertex[1] - t.vertex[0];
   const glm::dvec3 e2 = t.vertex[2] - t.vertex[0];
@@ -141,7 +140,7 @@ double hit_distance(const Triangle& t, const glm::dvec3& origin, const glm::dvec
   return glm::dot(e2, q) / determinant;
 }
 
-// From open points of the box, a ray in any direction first meets a front face.
+// From unoccupied points of the box, a ray in any direction first meets a front face.
 TEST(CornellBox, shows_only_front_faces_to_its_inside) {
   const Scene scene = cornell_box();
   int hits = 0;
@@ -161,7 +160,7 @@ TEST(CornellBox, shows_only_front_faces_to_its_inside) {
           nearest = &t;
         }
       }
-      if (nearest == nullptr) continue;  // out of the open front
+      if (nearest == nullptr) continue;  // the ray leaves through the open front
       ++hits;
       ASSERT_LT(glm::dot(normal(*nearest), direction), 0.0);
     }
@@ -193,7 +192,7 @@ TEST(CornellBox, light_faces_down_and_fills_the_hole_of_the_ceiling) {
   EXPECT_EQ(ceiling.size(), 8U);
   EXPECT_NEAR(light_area, 130.0 * 105.0, 1e-9);
   EXPECT_NEAR(light_area + ceiling_area, 556.0 * 559.2,
-              1e-6);  // no gap and, with the edges shared, no overlap
+              1e-6);  // no gap and, since edges are shared, no overlap
 
   const std::map<Edge, int> light_edges = directed_edges(light);
   const std::map<Edge, int> ceiling_edges = directed_edges(ceiling);
@@ -203,8 +202,8 @@ TEST(CornellBox, light_faces_down_and_fills_the_hole_of_the_ceiling) {
   EXPECT_EQ(shared, 4);
 }
 
-/// Whether the insides of two coplanar triangles meet: no edge of either separates them (separating axes in
-/// the plane).
+/// Whether the interiors of two coplanar triangles overlap: no edge of either separates them (separating axes
+/// in the plane).
 bool overlap_in_plane(const Triangle& a, const Triangle& b) {
   for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
     for (int i = 0; i < 3; ++i) {

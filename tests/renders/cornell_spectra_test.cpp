@@ -35,7 +35,7 @@ struct Spectrum {
   }
 };
 
-/// Column `name` of a CSV file over its first column, wavelength_nm.
+/// Reads column `name` of a CSV file over its first column, wavelength_nm.
 Spectrum read_column(const std::string& file, const std::string& name) {
   std::ifstream stream(scene_path(file));
   std::string line;
@@ -54,13 +54,13 @@ Spectrum read_column(const std::string& file, const std::string& name) {
   return spectrum;
 }
 
-/// A Gaussian with a slope of its own on each side; Wyman, Sloan and Shirley 2013, section 2.2.
+/// A Gaussian with a separate width on each side (Wyman, Sloan and Shirley 2013, section 2.2).
 double lobe(double wavelength, double centre, double slope_below, double slope_above) {
   const double t = (wavelength - centre) * (wavelength < centre ? slope_below : slope_above);
   return std::exp(-0.5 * t * t);
 }
 
-/// CIE 1931 2 degree observer; same paper, listing 1.
+/// The CIE 1931 2 degree observer (same paper, listing 1).
 glm::dvec3 colour_matching(double nm) {
   return {1.056 * lobe(nm, 599.8, 0.0264, 0.0323) + 0.362 * lobe(nm, 442.0, 0.0624, 0.0374) -
               0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
@@ -85,8 +85,8 @@ glm::dvec3 to_rgb(const std::function<double(double)>& spectrum) {
   const glm::dvec3 blue(0.15, 0.06, 0.79);
   const glm::dvec3 xyz = to_xyz(spectrum);
   const glm::dvec3 white = to_xyz([](double) { return 1.0; });
-  // A channel is zero in the plane of the two other primaries: its row of the matrix is their cross product,
-  // up to a factor that the division by white takes out.
+  // A channel is zero in the plane of the two other primaries. So its row of the matrix is their cross
+  // product, up to a factor that the division by white cancels.
   const glm::dvec3 rows[3] = {glm::cross(green, blue), glm::cross(blue, red), glm::cross(red, green)};
   glm::dvec3 rgb;
   for (int i = 0; i < 3; ++i) rgb[i] = glm::dot(rows[i], xyz) / glm::dot(rows[i], white);

@@ -1,5 +1,5 @@
-// A plane under a parallel square light against its closed form. The light reflects nothing and there is
-// nothing else, so what the plane sends is (reflectance / pi) * irradiance.
+// Compares a plane under a parallel square light with its closed form. The light reflects nothing and the
+// scene is otherwise empty, so the plane's radiance is (reflectance / pi) * irradiance.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ using testbench::Scene;
 constexpr double kPi = 3.14159265358979323846;
 const PlaneAndLight kValues{{0.25, 0.5, 0.75}, {4.0, 2.0, 1.0}};
 
-/// Share of a plane element's cosine-weighted hemisphere that a parallel rectangle a x b at height h takes,
-/// with one of its corners over the element (Howell's catalogue of configuration factors, B-3).
+/// The form factor of a parallel rectangle a x b at height h with a corner above the plane element: its share
+/// of the element's cosine-weighted hemisphere (Howell's catalogue of configuration factors, B-3).
 double corner_form_factor(double a, double b, double h) {
   const double x = a / h;
   const double y = b / h;
@@ -37,8 +37,8 @@ double corner_form_factor(double a, double b, double h) {
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
 }
 
-/// The same for the whole light, seen from (x, 0, z); odd in a and b, so the four corners add up with their
-/// signs.
+/// The form factor of the whole light, seen from (x, 0, z). corner_form_factor() is odd in a and b, so the
+/// four corners are added with their signs.
 double light_form_factor(double x, double z) {
   constexpr double kSide = PlaneAndLight::kLightHalfSide;
   constexpr double kHeight = PlaneAndLight::kLightHeight;
@@ -48,7 +48,8 @@ double light_form_factor(double x, double z) {
          corner_form_factor(kSide + x, kSide + z, kHeight);
 }
 
-/// Lambert's sum over the edges of a polygon seen from (x, 0, z), normal up: another way to the same number.
+/// The same number computed in another way: Lambert's sum over the edges of a polygon, seen from (x, 0, z)
+/// with the normal up.
 double polygon_form_factor(double x, double z) {
   constexpr double kSide = PlaneAndLight::kLightHalfSide;
   const glm::dvec3 from(x, 0, z);
@@ -67,7 +68,7 @@ double polygon_form_factor(double x, double z) {
   return std::abs(sum) / (2 * kPi);
 }
 
-/// Where the ray through a film position meets the plane y = 0.
+/// The point where the ray through a film position meets the plane y = 0.
 glm::dvec3 plane_point(const Scene& scene, double column, double row) {
   const Camera& camera = scene.camera;
   const double pixel = 2 * std::tan(camera.vertical_field_of_view_radians / 2) / scene.film.height;
@@ -77,7 +78,7 @@ glm::dvec3 plane_point(const Scene& scene, double column, double row) {
   return camera.position - direction * (camera.position.y / direction.y);
 }
 
-/// Mean of the form factor over a pixel, by Gauss and Legendre's rule of 4 x 4 points.
+/// The mean of the form factor over a pixel, by Gauss-Legendre quadrature with 4 x 4 points.
 double pixel_form_factor(const Scene& scene, int pixel) {
   const double points[4] = {0.069431844202973712, 0.330009478207571868, 0.669990521792428132,
                             0.930568155797026288};
@@ -98,7 +99,7 @@ TEST(DirectLight, ClosedFormsAgree) {
   for (const double x : {-3.0, -1.0, 0.0, 0.4, 1.7})
     for (const double z : {-2.0, 0.0, 0.9, 5.0})
       EXPECT_NEAR(light_form_factor(x, z), polygon_form_factor(x, z), 1e-14) << x << ", " << z;
-  // Known value: a square of half side 1 at height 1, centred.
+  // Known value of a centred square of half side 1 at height 1.
   EXPECT_NEAR(4 * corner_form_factor(1, 1, 1), 0.5541, 5e-5);
 }
 
@@ -108,7 +109,7 @@ void expect_closed_form(Program program) {
   const RenderResult result = render_natively(scene, render_options(program, kSamples));
   const Film& film = result.film;
   const double pixels = film.pixel_count();
-  // Light from one point of the square differs by a factor of a few at most, so sums of 4096 are normal.
+  // Contributions of the light's points differ by a small factor, so sums of 4096 are nearly normal.
   const double threshold = test_support::normal_threshold(test_support::per_test(pixels + 1));
   double deviations = 0;
   double variances = 0;
@@ -139,8 +140,8 @@ TEST(DirectLight, TheProgramWithoutTimedRadianceMakesTheSameImage) {
             render_natively(scene, render_options(Program::direct, 16)).film.sha256());
 }
 
-/// A path that goes on, with the largest reflectance as its probability, finds the light with the form
-/// factor's.
+/// A path continues with the largest reflectance as its probability, and then hits the light with the form
+/// factor as its probability.
 TEST(DirectLight, FindingTheLightByHittingItAgrees) {
   const Scene scene = test_support::plane_under_light(kValues, {24, 16});
   constexpr int kSamples = 4096;
@@ -163,13 +164,14 @@ TEST(DirectLight, FindingTheLightByHittingItAgrees) {
     all_hits += hits;
     all_expected += expected;
   }
-  // Unequal probabilities make the sum narrower than a binomial one (Hoeffding 1963, theorem 1).
+  // With unequal probabilities the sum varies less than a binomial one (Hoeffding 1963, theorem 1).
   const double share = all_expected / film.pixel_count();
   EXPECT_GT(test_support::binomial_tail_bound(all_hits, double(kSamples) * film.pixel_count(), share),
             probability);
 }
 
-/// The light's edges lie on pixel borders: 8 film heights to 8 units of length at the light.
+/// Whether a pixel shows the light, whose edges lie on pixel borders: the film's height covers 8 units of
+/// length at the light.
 bool shows_light(const FilmSize& film, int pixel) {
   const double units = 8.0 / film.height;
   const double x = (pixel % film.width + 0.5 - 0.5 * film.width) * units;

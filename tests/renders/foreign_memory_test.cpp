@@ -1,4 +1,4 @@
-// A memory that knows nothing of this project in the place of MonoDdr: whole renders give the same bits.
+// Whole renders with a foreign memory in place of MonoDdr give the same bits.
 
 #include <tlm_utils/simple_target_socket.h>
 #include <cstring>
@@ -17,8 +17,8 @@ using model::TimingStyle;
 using path_tracer::Program;
 using testbench::RenderOptions;
 
-/// As a stranger would write it: b_transport with a latency of its own that no clock divides, debug
-/// transport, a pointer if asked to, no extensions, no phases.
+/// A memory as a third party would write it: b_transport with a latency that is no multiple of the clock,
+/// debug transport, optional DMI, no extensions, no phases.
 class ForeignMemory : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<ForeignMemory> socket{"socket"};
@@ -118,12 +118,11 @@ INSTANTIATE_TEST_SUITE_P(Memories, Foreign,
                                   (parameters.param.latency_nanoseconds > 0 ? "" : "WithoutLatency");
                          });
 
-/// The latency of the foreign memory is felt: a slower one makes a longer run.
+/// A slower foreign memory makes a longer run.
 class ForeignLatency : public test_support::SystemCFixture, public testing::WithParamInterface<TimingStyle> {
  protected:
   static model::Cycles cycles_with(double latency_nanoseconds) {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     model::ChipConfig config = test_support::render_options(Program::full, 1).chip;
     config.ddr.size_bytes = 1 << 20;
     model::Csx600 chip("chip", config, GetParam(), model::MonoMemory::bound_outside);

@@ -1,5 +1,5 @@
-// A closed enclosure with albedo a and emission e everywhere: the radiance in it is e / (1 - a) in every
-// direction.
+// Furnace test: in a closed enclosure with albedo a and emission e everywhere, the radiance is e / (1 - a) in
+// every direction.
 
 #include <gtest/gtest.h>
 
@@ -31,12 +31,12 @@ using testbench::Scene;
 constexpr double kAlbedo = 0.5;
 constexpr double kEmission = 0.5;
 
-/// Bounds the probability that `paths` paths which end at each vertex with probability `end` have so many
-/// vertices in all, or more to the same side of the mean.
+/// An upper bound of the probability that `paths` paths, which end at each vertex with probability `end`,
+/// have a total of `vertices` vertices or one that is further from the mean on the same side.
 double vertices_tail_bound(double vertices, double paths, double end) {
   const bool few = vertices * end < paths;
-  // Few: already `vertices` trials had all the ends. Many: without the last trial, an end, one end was
-  // missing.
+  // Few vertices: `vertices` trials contain all ends. Many vertices: without the last trial, which is an end,
+  // one end is missing.
   return few ? test_support::binomial_tail_bound(paths, vertices, end)
              : test_support::binomial_tail_bound(paths - 1, vertices - 1, end);
 }
@@ -53,7 +53,7 @@ TEST(Furnace, EveryPixelOfACubeIsOneWhenLightIsFoundByHittingIt) {
     const glm::dvec3 mean = film.mean(pixel);
     EXPECT_EQ(mean.x, mean.y);
     EXPECT_EQ(mean.x, mean.z);
-    // Albedo / survival is exactly 1, so a path is worth kEmission times its number of vertices.
+    // Albedo / survival is exactly 1, so a path contributes kEmission times its number of vertices.
     const double vertices = mean.x * kSamples / kEmission;
     EXPECT_EQ(vertices, std::floor(vertices)) << "pixel " << pixel;
     EXPECT_GT(vertices_tail_bound(vertices, kSamples, 1 - kAlbedo), probability)
@@ -69,15 +69,15 @@ TEST(Furnace, EveryPixelOfACubeIsOneWhenLightIsFoundByHittingIt) {
 
 TEST(Furnace, WithoutRouletteEveryPathIsOne) {
   RenderOptions options = render_options(Program::segments, 4);
-  options.program.roulette_start = 40;  // what comes behind is worth 2^-40 on average
+  options.program.roulette_start = 40;  // later vertices contribute 2^-40 on average
   const RenderResult result = render_natively(closed_cube(kAlbedo, kEmission, {40, 30}), options);
   EXPECT_GT(result.counts.folds, result.counts.paths);
   for (const double value : result.film.rgb()) ASSERT_NEAR(value, 1.0, 1e-10);
 }
 
-/// Tests every pixel and the whole film. Direct light from close by, over an edge, is rare and bright: P(path
-/// > x) falls as x^-3/2, which has no variance, and no statistic of it is normal. So paths are clipped, which
-/// makes means smaller by at most the given amounts, and judged by a bound that holds for all bounded
+/// Tests every pixel and the whole film. Direct light from near points across an edge is rare and bright:
+/// P(path > x) falls as x^-3/2, so the variance is infinite and no statistic is normal. So paths are clipped,
+/// which reduces means by at most the given amounts, and are tested by a bound that holds for all bounded
 /// variables.
 void expect_ones(const Scene& scene, int samples, double clip, double clipped_of_film,
                  double clipped_of_pixel) {
@@ -110,13 +110,14 @@ void expect_ones(const Scene& scene, int samples, double clip, double clipped_of
 }
 
 TEST(Furnace, EveryPixelOfASphereIsOneWithDirectLight) {
-  // The tail's weight goes with (edge length) * sin(edge angle)^3: 1/50 of the cube's for these 512 faces.
+  // The tail's weight is proportional to (edge length) * sin(edge angle)^3: for these 512 faces 1/50 of the
+  // cube's.
   expect_ones(closed_sphere(kAlbedo, kEmission, 3, {8, 6}), 16384, 5.0, 0.005, 0.005);
 }
 
 TEST(Furnace, EveryPixelOfACubeIsOneWithDirectLight) {
-  // A separate simulation of 10^7 paths that start anywhere clips 0.038; pixels that show an edge at most
-  // thrice that.
+  // In a separate simulation of 10^7 paths from random points, clipping removes 0.038; in pixels that show an
+  // edge at most three times as much.
   expect_ones(closed_cube(kAlbedo, kEmission, {12, 10}), 16384, 8.5, 0.05, 0.115);
 }
 
@@ -148,7 +149,7 @@ TEST(Furnace, RouletteBelowTheAlbedoKeepsTheMean) {
   options.program.roulette_start = 2;
   constexpr double kWeight = kAlbedo / 0.4;
   const std::vector<RadianceRecord> paths = native_paths(closed_cube(kAlbedo, kEmission, {40, 40}), options);
-  // A path of k vertices after the second has the mean and the variance of a geometric sum of growing
+  // A path with k vertices after the second has the mean and the variance of a geometric sum of growing
   // weights.
   constexpr double kVertices = 40;
   double mean = 0;
@@ -171,14 +172,14 @@ TEST(Furnace, RouletteBelowTheAlbedoKeepsTheMean) {
 TEST(Furnace, ShortSlotsFoldToTheSameImage) {
   for (const Program program : {Program::segments, Program::full}) {
     RenderOptions options = render_options(program, 8);
-    options.program.roulette_start = 9;  // weights other than 1 before and after a fold
+    options.program.roulette_start = 9;  // so that weights other than 1 occur before and after a fold
     const Scene scene = closed_cube(0.9, 0.1, {17, 13});
     const RenderResult long_slots = render_natively(scene, options);
     options.program.slot_vertices = 4;
     const RenderResult short_slots = render_natively(scene, options);
     EXPECT_GT(short_slots.counts.folds, short_slots.counts.paths);
     EXPECT_LT(long_slots.counts.folds, short_slots.counts.folds);
-    // Not the same bits: a path that is cut is rounded elsewhere.
+    // The bits may differ, because a path that is cut is rounded at other places.
     const std::vector<double> expected = long_slots.film.rgb();
     const std::vector<double> found = short_slots.film.rgb();
     for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found[i], expected[i], 1e-12 * expected[i]);

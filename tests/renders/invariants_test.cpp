@@ -35,18 +35,14 @@ using testbench::Scene;
 
 class Invariants : public test_support::SystemCFixture {
  protected:
-  /// On a chip of its own.
+  /// Renders on a new chip.
   static RenderResult on_chip(const Scene& scene, const RenderOptions& options) {
     new_context();
     return testbench::render_on_chip(scene, options);
   }
-  static void new_context() {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
-  }
 };
 
-/// Everything but the host's times.
+/// The statistics without the simulator's times.
 std::string statistics(const RenderOptions& options, const RenderResult& result) {
   nlohmann::ordered_json json = testbench::render_statistics({"scene", options, false}, result);
   json.erase("host");
@@ -124,8 +120,8 @@ std::vector<Variation> all_variations() {
   return variations;
 }
 
-/// The length of the slots decides how a long path's recursion is rounded, so each length has a film of its
-/// own.
+/// The length of the slots decides how the recursion of a long path is rounded, so each length has its own
+/// film.
 class ExpectedFilms {
  public:
   ExpectedFilms(const Scene& scene, const RenderOptions& options) : scene_(scene), options_(options) {}
@@ -262,7 +258,7 @@ TEST_F(Invariants, WavesLogsAndTimelinesChangeNothing) {
   std::filesystem::remove_all(directory);
 }
 
-/// Checks that spans follow each other, and adds them up.
+/// Checks that spans follow each other without gaps, and sums them.
 class SpanChecker : public model::ControlObserver {
  public:
   void spent(model::CycleCause cause, model::Cycles start, model::Cycles finish, int semaphore) override {

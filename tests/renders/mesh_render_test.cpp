@@ -1,4 +1,4 @@
-// A mesh of more than 1,000 triangles, by brute force.
+// Renders a mesh of more than 1,000 triangles by brute force.
 
 #include <algorithm>
 
@@ -27,7 +27,7 @@ TEST_F(MeshRender, ChipAndNativeRunShowTheSameMesh) {
   EXPECT_EQ(chip.film.sha256(), native.film.sha256());
   EXPECT_EQ(chip.counts.segments, native.counts.segments);
   EXPECT_EQ(chip.film.rejected_samples(), 0u);
-  // Twice the data cache: what kernels read of the mesh is fetched anew in every block.
+  // The mesh is twice as large as the data cache, so every block fetches it again.
   EXPECT_GT(scene.triangles.size() * sizeof(path_tracer::TriangleRecord),
             std::size_t(options.chip.control.data_cache_bytes));
   EXPECT_GT(chip.chip->control.data_cache_misses, scene.triangles.size());
@@ -42,12 +42,12 @@ TEST_F(MeshRender, SphereIsSeenWhereItIs) {
     const glm::dvec3 mean = result.film.mean(pixel);
     if (mean.x > 3 * mean.y) ++red_pixels;
   }
-  // A disc of radius 0.71 (0.7 seen from 4 away) in a picture 2 * 4 * tan(20 degrees) = 2.91 high: 107 of 24
-  // x 32 pixels.
+  // The sphere appears as a disc of radius 0.71 (0.7 at a distance of 4) in a picture of height 2 * 4 *
+  // tan(20 degrees) = 2.91: 107 of 24 x 32 pixels.
   EXPECT_NEAR(red_pixels, 107, 12);
 }
 
-/// Each triangle glows in a way of its own, and a ray towards it from close by finds it.
+/// Each triangle emits a different radiance, and a ray from a point close to it finds it.
 TEST_F(MeshRender, NoTriangleIsSkipped) {
   Scene scene = test_support::triangle_soup(1200, 11, {1, 1});
   scene.materials.clear();

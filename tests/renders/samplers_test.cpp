@@ -1,5 +1,5 @@
-// Every combination of sampler and light sampling gives the right image, and stratified points give it
-// sooner.
+// Every combination of sampler and light sampling gives the right image, and stratified points need fewer
+// samples.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ std::vector<Combination> combinations() {
   return all;
 }
 
-/// The mean of a channel over pixels and seeds, each of which is an independent estimate, and its deviation.
+/// Compares the mean of a channel over pixels and seeds, all independent estimates, with the expected value.
 struct Estimate {
   double mean = 0;
   double deviation = 0;
@@ -77,8 +77,8 @@ Estimate estimate(const Scene& scene, const Combination& combination, int sample
   return {mean, std::sqrt((squares / count - mean * mean) / (count - 1))};
 }
 
-/// Emission 0.5, albedo 0.5: radiance 1 in every direction. Triangles of all distances and slants, many below
-/// a lit point's horizon in part.
+/// Emission 0.5 and albedo 0.5 give radiance 1 in every direction. Triangles have all distances and slants,
+/// and many lie partly below the horizon of a lit point.
 TEST(Samplers, AClosedSphereIsOneWithEachOfThem) {
   const Scene scene = test_support::closed_sphere(0.5, 0.5, 2, {16, 12});
   for (const Combination& combination : combinations()) {
@@ -89,8 +89,8 @@ TEST(Samplers, AClosedSphereIsOneWithEachOfThem) {
   }
 }
 
-/// In a cube light comes from next to the lit point, over an edge. Uniform in area that has no variance to
-/// test with (furnace_test.cpp); by solid angle it does, and its faces are rectangles.
+/// In a cube some light comes from close to the lit point, across an edge. Sampling by area then has infinite
+/// variance (furnace_test.cpp); by solid angle the variance is finite. The cube's faces are rectangles.
 TEST(Samplers, AClosedCubeIsOneBySolidAngle) {
   const Scene scene = test_support::closed_cube(0.5, 0.5, {16, 12});
   for (const Combination& combination : combinations()) {
@@ -102,7 +102,7 @@ TEST(Samplers, AClosedCubeIsOneBySolidAngle) {
   }
 }
 
-/// Random triangles, some of which emit: everything that geometry can do to a light.
+/// Random triangles, some of which emit, cover many relative positions of lights and lit points.
 TEST(Samplers, AllAgreeOnRandomTriangles) {
   const Scene scene = test_support::triangle_soup(24, 3, {16, 12});
   const Combination plain{Sampler::philox, LightSampling::area, 0};
@@ -125,8 +125,9 @@ TEST(Samplers, AllAgreeOnRandomTriangles) {
   }
 }
 
-/// Mean squared error of a pixel without the light in it: the variance between seeds, since unbiased samplers
-/// differ by their noise alone. Few samples have rare large errors, and get more seeds for it.
+/// Mean squared error over the pixels that do not show the light. It is the variance between seeds, because
+/// unbiased samplers differ only by their noise. With few samples large errors are rare, so more seeds are
+/// used.
 double mse(const Scene& scene, const Combination& combination, int samples) {
   const int seeds = std::clamp(4096 / samples, 2, 256);
   const std::vector<bool> left_out = testbench::light_pixels(scene);
@@ -150,33 +151,34 @@ double mse(const Scene& scene, const Combination& combination, int samples) {
 double rmse_slope(const Scene& scene, const Combination& combination) {
   std::vector<double> samples;
   std::vector<double> errors;
-  for (int count = 1; count <= 16384; count *= 4) {  // 4.2 decades
+  for (int count = 1; count <= 16384; count *= 4) {  // spans 4.2 decades
     samples.push_back(count);
     errors.push_back(std::sqrt(mse(scene, combination, count)));
   }
   return testbench::log_log_slope(samples, errors);
 }
 
-/// Pixels this large see many surfaces, so most of the error depends on several pairs of numbers: stratified
-/// points make it smaller, hardly steeper.
+/// Pixels this large show many surfaces, so most of the error depends on several pairs of numbers. Stratified
+/// points make it smaller but hardly steeper.
 TEST(Samplers, ErrorFallsAsOneOverTheRootOfTheSamplesOrFaster) {
   const Scene box = test_support::small_cornell_box({8, 8});
-  constexpr double kScatter = 0.04;  // of the slope: eight errors of 63 pixels each
+  constexpr double kScatter = 0.04;  // scatter of the slope: eight errors of 63 pixels each
   EXPECT_NEAR(rmse_slope(box, {Sampler::philox, LightSampling::area, 0}), -0.5, kScatter);
   EXPECT_LT(rmse_slope(box, {Sampler::sobol, LightSampling::solid_angle, 3}), -0.5 + kScatter);
   EXPECT_LT(mse(box, {Sampler::sobol, LightSampling::solid_angle, 3}, 64),
             0.75 * mse(box, {Sampler::philox, LightSampling::solid_angle, 3}, 64));
 }
 
-/// Direct light alone is smooth in its four numbers. Each pair is stratified, so what depends on one pair
-/// falls faster; the pairs are shuffled apart, so what depends on both falls as with independent numbers.
+/// Direct light alone is a smooth function of its four numbers. Each pair is stratified, so the part of the
+/// error that depends on one pair falls faster. The pairs are shuffled independently, so the part that
+/// depends on both falls as with independent numbers.
 TEST(Samplers, ErrorOfDirectLightFallsFasterThanThat) {
   const Scene plane = test_support::plane_under_light({{0.25, 0.5, 0.75}, {4.0, 2.0, 1.0}}, {12, 8});
   EXPECT_LT(rmse_slope(plane, {Sampler::sobol, LightSampling::area, 0}), -0.6);
   EXPECT_LT(rmse_slope(plane, {Sampler::sobol, LightSampling::solid_angle, 0}), -0.6);
 }
 
-/// The warp to the cosine takes what variance an unblocked light has nearly away.
+/// The warp to the cosine removes nearly all variance of an unoccluded light.
 TEST(Samplers, SolidAngleTakesTheVarianceOfAnOpenLight) {
   const Scene plane = test_support::plane_under_light({{0.25, 0.5, 0.75}, {4.0, 2.0, 1.0}}, {12, 8});
   const double by_area = mse(plane, {Sampler::philox, LightSampling::area, 0}, 256);

@@ -1,5 +1,5 @@
-// One shadow ray for every segment that reaches a surface which reflects (paper, section 4.1: "a single
-// shadow ray per path segment"), and what may be left out of that.
+// Every segment that reaches a reflecting surface has one shadow ray (paper, section 4.1: "a single shadow
+// ray per path segment"). Tests also which shadow rays may be left out.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ RenderResult with_shadow_rays(const Scene& scene, bool cull) {
   return render_natively(scene, options);
 }
 
-/// A cube whose face `face` reflects nothing.
+/// A cube whose face `face` does not reflect.
 Scene cube_with_a_black_face(std::size_t face) {
   Scene scene = closed_cube(0.9, 0.1, kFilm);
   scene.materials.push_back({"black", {0, 0, 0}, {0, 0, 0}});
@@ -61,8 +61,8 @@ TEST(ShadowRays, EverySegmentCastsOneWhereAllReflects) {
   }
 }
 
-/// Without roulette a path's last segment is the one that reaches the black face or leaves through the hole,
-/// and it alone casts nothing.
+/// Without roulette a path's last segment is the one that reaches the black face or leaves through the hole.
+/// It alone has no shadow ray.
 TEST(ShadowRays, SegmentsThatReachNothingThatReflectsCastNone) {
   RenderOptions options = with_every_shadow_ray(Program::full, 4);
   options.program.roulette_start = 1 << 20;
@@ -99,8 +99,8 @@ TEST(ShadowRays, ThoseThatCannotSeeTheLightMayBeLeftOut) {
   }
 }
 
-/// Slots alternate between segments and shadow rays in an order that depends on all of these; the rays do
-/// not.
+/// The order in which slots alternate between segments and shadow rays depends on all of these options; the
+/// rays do not.
 TEST(ShadowRays, TheirNumberDependsOnTheSceneOnly) {
   const Scene scene = test_support::small_cornell_box(kFilm);
   for (const bool cull : {false, true}) {

@@ -1,5 +1,5 @@
-// Loosely against approximately timed: the same image, nearly the same cycles. `csx600 bench timing` measures
-// the same points on a larger film.
+// Loosely and approximately timed runs give the same image and nearly the same cycles. `csx600 bench timing`
+// measures the same points on a larger film.
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -19,13 +19,14 @@ using testbench::RenderOptions;
 using testbench::RenderResult;
 using testbench::Scene;
 
-/// Found on this small film, on which single PEs and drained bins weigh more than in a real run: 0.38 % at
-/// most ...
+/// The largest error found on this small film is 0.38 %. Single PEs and drained bins have more weight than in
+/// a real run.
 constexpr double kErrorPercent = 1.0;
-/// ... and 2.3 % where requests wait for the memory more than for the engine: its latency is twice or seven
-/// times the default, or the engine takes no time for a PE. Loosely timed, a short scatter waits until the
-/// memory has opened its rows, though posted, and memory knows all addresses of a request at once; the one
-/// errs upwards, the other downwards. On 96 x 96 pixels with the paper's code: `csx600 bench timing`.
+/// The largest error is 2.3 % where requests wait for the memory more than for the engine: with two or seven
+/// times the default latency, or with an engine that takes no time per PE. Loosely timed, a short scatter
+/// waits until the memory has opened its rows, although writes are posted, which gives too many cycles. And
+/// the memory knows all addresses of a request at once, which gives too few. `csx600 bench timing` measures
+/// 96 x 96 pixels with the paper's code.
 constexpr double kErrorPercentBoundByMemory = 2.5;
 bool is_bound_by_memory(const model::ChipConfig& chip) {
   return chip.ddr.page_miss_cycles > 60 || chip.pio.per_pe_cycles == 0;
@@ -34,8 +35,7 @@ bool is_bound_by_memory(const model::ChipConfig& chip) {
 class TimingAgreement : public test_support::SystemCFixture {
  protected:
   static RenderResult run(const Scene& scene, RenderOptions options, TimingStyle timing) {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     options.timing = timing;
     return testbench::render_on_chip(scene, options);
   }

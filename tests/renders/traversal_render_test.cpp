@@ -1,4 +1,4 @@
-// Whole renders through a tree: the image of brute force, to the bit, whichever way rays go through it.
+// Whole renders through a tree give the image of brute force, equal to the bit, with every traversal.
 
 #include <functional>
 
@@ -31,9 +31,9 @@ Scene scene_of(GeneratedScene kind) {
 
 RenderOptions options_for(Program program, Traversal traversal) {
   RenderOptions options = test_support::render_options(program, 2);
-  options.chip.poly.sram_bytes = 32768;  // eight blocks ahead need more than the CSX600's 6 KiB
+  options.chip.poly.sram_bytes = 32768;  // n = 8 needs more than the CSX600's 6 KiB
   options.program.traversal = traversal;
-  options.program.slot_vertices = 4;  // many paths are folded
+  options.program.slot_vertices = 4;  // small slots, so that many paths are folded
   return options;
 }
 
@@ -85,13 +85,12 @@ std::vector<Variation> variations() {
 class TraversalRender : public test_support::SystemCFixture {
  protected:
   static RenderResult on_chip(const Scene& scene, const RenderOptions& options) {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     return testbench::render_on_chip(scene, options);
   }
 };
 
-/// Brute force is given the same variation; that it does not depend on most of them is tested elsewhere.
+/// Brute force gets the same variation. Other tests show that its image does not depend on most of them.
 void expect_images_of_brute_force(const Scene& scene, Program program) {
   for (const Variation& variation : variations()) {
     RenderOptions plain = options_for(program, Traversal::brute_force);
@@ -122,16 +121,16 @@ TEST_F(TraversalRender, ShowsTheImageOfBruteForce) {
     }
 }
 
-/// Where most paths end at once, and where none does.
+/// Scenes in which most paths end at once, and in which none does.
 TEST_F(TraversalRender, ShowsOpenAndClosedScenes) {
   expect_images_of_brute_force(test_support::triangle_soup(60, 3, {9, 7}), Program::full);
   expect_images_of_brute_force(test_support::closed_cube(0.8, 1.0, {6, 4}), Program::full);
   expect_images_of_brute_force(test_support::small_cornell_box({12, 12}), Program::direct);
 }
 
-/// Camera rays of far pixels side by side: what is next to whom changes no pixel.
+/// Camera rays of distant pixels are processed together. The order of rays changes no pixel.
 TEST_F(TraversalRender, ShowsTheSameImageInAnyOrderOfPixels) {
-  const Scene scene = scene_of(GeneratedScene::blob);  // of 192 pixels
+  const Scene scene = scene_of(GeneratedScene::blob);  // a film of 192 pixels
   const RenderResult in_order =
       testbench::render_natively(scene, options_for(Program::full, Traversal::brute_force));
   for (const int stride : {5, 77, 191, 193, 1000001})
@@ -162,7 +161,7 @@ TEST_F(TraversalRender, CountsEachRayOnceInItsFirstPass) {
         testbench::render_natively(scene_of(GeneratedScene::blob), options_for(Program::direct, traversal));
     const path_tracer::TraversalCounts& counts = result.counts.traversal;
     ASSERT_EQ(counts.rays.size(), counts.lanes.size());
-    // Packets take one pass; treelets that are shared come in no order, so all but the first count as one.
+    // Packets take one pass. Shared treelets come in no order, so all passes but the first count as one.
     const bool in_passes = traversal != Traversal::packets && traversal != Traversal::shared_treelets;
     ASSERT_GT(counts.rays.size(), in_passes ? 2u : 0u);
     EXPECT_EQ(counts.rays[0], result.counts.segments + result.counts.shadow_rays);
@@ -172,7 +171,8 @@ TEST_F(TraversalRender, CountsEachRayOnceInItsFirstPass) {
     for (std::size_t pass = 0; pass < counts.rays.size(); ++pass) {
       rays += counts.rays[pass];
       lanes += counts.lanes[pass];
-      // A block of the bin counts as its first ray's pass, whatever pass its others are in.
+      // A block of the temporary bin counts as the pass of its first ray, whatever the pass of its other
+      // rays.
       if (in_passes && traversal != Traversal::temporary_bin && pass > 0) {
         EXPECT_LE(counts.rays[pass], counts.rays[pass - 1]);
       }
@@ -209,7 +209,7 @@ TEST_F(TraversalRender, HasNoHazardsOnTheChipAtAnyN) {
     }
 }
 
-/// The CSX600 as it is.
+/// The unchanged CSX600.
 TEST_F(TraversalRender, FitsSixKibibytesWithOneBlockAhead) {
   const Scene scene = scene_of(GeneratedScene::stadium);
   for (const Traversal traversal : kTraversals) {

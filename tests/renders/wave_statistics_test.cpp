@@ -49,16 +49,12 @@ class WaveStatistics : public test_support::SystemCFixture, public testing::With
     EXPECT_EQ(result.observation_failures, "");
     return *result.chip;
   }
-  static void new_context() {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
-  }
   VcdReader vcd() const { return VcdReader::of_file(path("run.vcd")); }
 
   std::uint64_t cycle_at(std::uint64_t picoseconds) const {
     return std::uint64_t(std::llround(double(picoseconds) * options_.chip.chip.clock_hz / 1e12));
   }
-  /// Cycles for which a signal has a value.
+  /// Number of cycles for which a signal has a value.
   Cycles cycles_at(const VcdReader& vcd, const std::string& path, std::uint64_t value) const {
     const auto& changes = vcd.signal(path).changes;
     Cycles sum = 0;
@@ -102,7 +98,7 @@ TEST_P(WaveStatistics, ControlUnitsCyclesByCause) {
 }
 
 TEST_P(WaveStatistics, CyclesOfEachKernel) {
-  options_.chip.pio.stolen_sram_cycles = 0;  // which waves count with the kernel
+  options_.chip.pio.stolen_sram_cycles = 0;  // waves count stolen cycles with the kernel
   const testbench::ChipStatistics chip = run();
   const VcdReader vcd = this->vcd();
   std::map<std::string, Cycles> shown;
@@ -152,7 +148,7 @@ TEST_P(WaveStatistics, LoadsOfTheNextBlockAndSavesOfTheOneBeforeOverlapComputing
   bool next_loads = false;
   bool last_saves = false;
   for (const auto& change : vcd.signal("bins.compute_block").changes) {
-    const std::uint64_t at = change.time + 4'000'000;  // some way into it
+    const std::uint64_t at = change.time + 4'000'000;  // shortly after the block begins
     if (vcd.value_at("pe_array.busy", at) == 0 || vcd.value_at("bins.compute_block", at) != change.value)
       continue;
     const auto is = [&](const std::string& part, std::uint64_t block) {

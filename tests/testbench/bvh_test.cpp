@@ -141,7 +141,7 @@ TEST(Bvh, OptionsOutOfRangeAreNamed) {
   EXPECT_EQ(message({4, 4, 129}), "BVH: depth is 129, allowed are 16 to 128");
 }
 
-/// Embree runs out of levels here: binned splits take one box off at a time.
+/// Embree exceeds the levels here, because binned splits separate one box at a time.
 TEST(Bvh, TrianglesInOnePlaceAndFarAwayGiveABalancedTree) {
   std::vector<Box> boxes(200000, Box{glm::dvec3(0), glm::dvec3(1e-9)});
   for (int i = 0; i < 60; ++i)
@@ -161,7 +161,7 @@ TEST(Bvh, ABalancedTreeHasTheLeastLevels) {
   EXPECT_EQ(levels(build_balanced_bvh(boxes, 8, 2)), 3);
 }
 
-/// 2^17 boxes want 17 levels of two.
+/// 2^17 boxes need 17 levels of nodes with two children.
 TEST(Bvh, ThatIsTooDeepByAnyWayIsRefused) {
   const std::vector<Box> boxes(1u << 17, Box{glm::dvec3(0), glm::dvec3(1)});
   try {

@@ -1,5 +1,6 @@
-// `csx600 calibrate` at a reduced size: the constants are others there, for the run's beginning and end take
-// a larger share, but the method and the structure of what it predicts are the same.
+// Tests `csx600 calibrate` at a reduced size. The constants differ from those of the preset, because the
+// beginning and the end of a run have a larger share, but the method and the structure of the predictions are
+// the same.
 
 #include "testbench/paper/calibration.hpp"
 
@@ -71,7 +72,7 @@ TEST(Calibration, MeetsTheFittedCellsAndPredictsTheOthers) {
       ++predicted;
     }
   }
-  // Table 2 repeats the three cells in its rows "none" and "both".
+  // The rows "none" and "both" of Table 2 repeat the three cells.
   EXPECT_EQ(fitted, 6);
   EXPECT_EQ(predicted, 18);
   EXPECT_NEAR(result.mean_error, sum / predicted, 1e-12);
@@ -183,13 +184,12 @@ TEST(FittedConstants, AreSetAndWrittenAsTheSettingsSay) {
     EXPECT_NE(header.find(line), std::string::npos) << header;
 }
 
-/// Of preset paper at a size that a test can run. Seconds of the samples between two lengths of run, so that
-/// the beginning and the end, which a million paths make small, drop out.
+/// Renders with preset paper at a size for tests. The difference of a long and a short run cancels the
+/// beginning and the end, whose share is small in a run of a million paths.
 class PresetPaper : public test_support::SystemCFixture {
  protected:
   static RenderResult run(const PaperCell& cell, int samples) {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     RenderOptions options = test_support::render_options(cell.program, samples);
     options.chip = model::preset("paper");
     options.program = testbench::paper_program();

@@ -1,4 +1,5 @@
-// One declaration a counter: what JSON, CSV and text make of it, and what the counters of a run add up to.
+// Each counter is declared once: tests JSON, CSV and text made from the declarations, and sums of a run's
+// counters.
 
 #include "testbench/statistics/counters.hpp"
 
@@ -25,7 +26,7 @@ using testbench::Counter;
 using testbench::RenderOptions;
 using testbench::RenderResult;
 
-/// The lines of a CSV text as cells; a quoted cell may hold commas.
+/// Splits a CSV text into lines of cells. A quoted cell may contain commas.
 std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
   std::vector<std::vector<std::string>> rows(1, {""});
   bool quoted = false;
@@ -50,8 +51,7 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
 class CountersOfRuns : public test_support::SystemCFixture {
  protected:
   static RenderResult on_chip(const RenderOptions& options) {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     return testbench::render_on_chip(test_support::small_cornell_box({17, 5}), options);
   }
   static ordered_json statistics(const RenderOptions& options) {
@@ -84,7 +84,7 @@ TEST(CounterDeclarations, DescriptionNamesEachWithItsUnitAndMeaning) {
   }
 }
 
-/// Of a run through a tree: others have no rays by pass.
+/// Statistics of a run through a tree; other runs have no rays by pass.
 TEST_F(CountersOfRuns, EachDeclarationIsInJsonCsvAndText) {
   RenderOptions options = test_support::render_options(Program::full, 24);
   options.program.traversal = path_tracer::Traversal::refill;
@@ -98,7 +98,7 @@ TEST_F(CountersOfRuns, EachDeclarationIsInJsonCsvAndText) {
     ASSERT_EQ(row.size(), 4u) << row[0];
     csv[row[0]] = row;
   }
-  EXPECT_EQ(csv.size(), flat.size() + 1);  // and the header
+  EXPECT_EQ(csv.size(), flat.size() + 1);  // one line per counter and the header
   const std::string text = testbench::statistics_text(json);
   for (const Counter& declared : testbench::all_counters()) {
     const Counter* const counter = testbench::find_counter(declared.key);
@@ -139,7 +139,7 @@ TEST_F(CountersOfRuns, ParametersOfTheChipAreKeysOfTheirOwn) {
   EXPECT_EQ(flat.at("chip_config.pio.arbitration"), "reads_overtake_writes");
 }
 
-/// What holds between the counters of any run.
+/// Relations between the counters that hold for every run.
 void expect_sums(const RenderResult& result, const std::string& name) {
   const testbench::ChipStatistics& chip = *result.chip;
   EXPECT_EQ(chip.control.total(), chip.firmware_cycles) << name;

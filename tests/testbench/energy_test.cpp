@@ -22,10 +22,9 @@ using testbench::ExampleRun;
 
 class EnergyOfRuns : public test_support::SystemCFixture {
  protected:
-  /// What a small firmware counts on a chip whose mono memory is filled beforehand.
+  /// Statistics of a small firmware on a chip whose mono memory is filled beforehand.
   static ChipStatistics statistics_of(const model::ChipConfig& config, const ExampleRun& run) {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     model::Csx600 chip("chip", config);
     std::memcpy(chip.mono_ddr->memory().data(), run.mono.data(), run.mono.size());
     chip.control_unit.load(run.firmware);
@@ -37,7 +36,7 @@ class EnergyOfRuns : public test_support::SystemCFixture {
     return testbench::collect_statistics(chip, chip.control_unit.now());
   }
 
-  /// The one that validate runs.
+  /// The DGEMM that `csx600 validate` runs.
   static ExampleRun dgemm(const model::ChipConfig& config) {
     examples::Dgemm::Problem problem;
     problem.column_blocks = 2;
@@ -57,7 +56,7 @@ TEST_F(EnergyOfRuns, DgemmTakesTheVendorsTenWatts) {
   const ChipStatistics run = statistics_of(config, dgemm(config));
   const Energy energy = testbench::energy_of(run);
   EXPECT_NEAR(energy.chip_joules() / energy.seconds, 10, 0.1);
-  // Two chips with their memory are on a board of 25 W typical, with an FPGA and regulators.
+  // A board with two chips, their memory, an FPGA and regulators takes 25 W typically.
   EXPECT_LT(2 * energy.joules() / energy.seconds, 25);
   for (const Energy::Cause& cause : energy.causes)
     RecordProperty(cause.name, std::to_string(cause.joules / energy.seconds));
@@ -75,7 +74,7 @@ TEST_F(EnergyOfRuns, MonteCarloLeavesTheBoardSomeOfItsTwentyFiveWatts) {
   EXPECT_LT(board_watts, 25);
 }
 
-/// A run of one kernel's worth of counts, all of them different.
+/// Statistics of a run with one kernel; all counts differ.
 ChipStatistics made_up_run() {
   ChipStatistics run;
   run.config = model::default_chip_config();
@@ -146,15 +145,14 @@ TEST(Energy, EveryEntryOfTheTableCounts) {
     parameter.write(other.config, 2 * std::get<double>(parameter.read(run.config)));
     EXPECT_GT(testbench::energy_of(other).joules(), joules) << parameter.key;
   }
-  EXPECT_EQ(entries, 12 + int(cn::kInstructionClasses) - 1);  // all classes but mono
+  EXPECT_EQ(entries, 12 + int(cn::kInstructionClasses) - 1);  // all instruction classes except mono
 }
 
 TEST_F(EnergyOfRuns, CausesAddUpToTheTotal) {
   for (const char* preset : {"csx600", "paper", "csx700", "g80_like"}) {
     testbench::RenderOptions options = test_support::render_options(path_tracer::Program::full, 4);
     options.chip = model::load_chip(preset);
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
+    new_context();
     const testbench::RenderResult result =
         testbench::render_on_chip(test_support::small_cornell_box({17, 5}), options);
     const Energy energy = testbench::energy_of(*result.chip);
@@ -200,7 +198,7 @@ TEST_F(EnergyOfRuns, DgemmDoesTheOperationsThatItsWorkIs) {
   examples::Dgemm::Problem problem;
   const ExampleRun run = testbench::dgemm_run(problem, config.chip.pes, testbench::widest_level());
   const testbench::Roofline roofline = testbench::roofline_of(statistics_of(config, run));
-  // The last 8 PEs of 96 feed the others and multiply along.
+  // The last 8 of the 96 PEs feed the others and multiply as well.
   EXPECT_NEAR(roofline.flops() / run.work, 96.0 / 88, 1e-12);
   EXPECT_EQ(roofline.roofs.size(), 4u);
 }

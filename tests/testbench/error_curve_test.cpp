@@ -16,7 +16,7 @@ using testbench::image_error;
 using testbench::ImageError;
 using testbench::Scene;
 
-/// A film of one sample a pixel.
+/// A film with one sample per pixel.
 Film film_of(FilmSize size, const std::vector<double>& rgb) {
   Film film(size, 1.0);
   for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
@@ -52,7 +52,7 @@ TEST(ErrorCurve, TheReferencesVarianceIsSubtracted) {
   EXPECT_DOUBLE_EQ(error.mse, 5 / 3.0 - 0.25);
 }
 
-/// A noisy reference of few samples against noisy films: what comes out is the films' own variance.
+/// With a noisy reference of few samples, the error of noisy films is the films' own variance.
 TEST(ErrorCurve, NoiseOfTheReferenceDoesNotShow) {
   const FilmSize size{64, 64};
   std::mt19937_64 random(11);
@@ -78,7 +78,8 @@ TEST(ErrorCurve, NoiseOfTheReferenceDoesNotShow) {
   for (const int count : {1, 4, 16, 64}) {
     const double expected = 0.01 / count;
     const double found = image_error(noisy(count), reference, all).mse;
-    // 12,288 values; the squared difference scatters by sqrt(2) of its mean, which holds the reference's too.
+    // There are 12,288 values. The squared difference scatters by sqrt(2) of its mean, which includes the
+    // reference's variance.
     EXPECT_NEAR(found, expected, 4.5 * std::sqrt(2.0 / 12288) * (expected + 0.01 / 16)) << count;
     samples.push_back(count);
     errors.push_back(std::sqrt(found));
@@ -108,7 +109,7 @@ TEST(ErrorCurve, CostIsErrorTimesTime) {
   EXPECT_DOUBLE_EQ(testbench::cost_of_error(error, 5.0), 1e-3);
 }
 
-/// Looks along +z from the origin; one unit at depth 1 is half the film's height.
+/// A camera at the origin that looks along +z. At depth 1 one unit is half the film's height.
 Scene light_scene(const glm::dvec3 (&corners)[3], FilmSize film) {
   Scene scene;
   scene.camera.direction = {0, 0, 1};
@@ -126,9 +127,10 @@ int marked(const Scene& scene) {
 }
 
 TEST(LightPixels, AreThoseThatATriangleTouches) {
-  // Right is -x here. Half of the picture, cut along its diagonal; wound to face the camera.
+  // A triangle that covers half of the picture, cut along its diagonal, and faces the camera. Right is -x
+  // here.
   Scene scene = light_scene({{1, 1, 1}, {1, -1, 1}, {-1, -1, 1}}, {8, 8});
-  EXPECT_EQ(marked(scene), 36);  // 28 below the diagonal and the 8 it crosses
+  EXPECT_EQ(marked(scene), 36);  // 28 pixels below the diagonal and 8 on it
   std::swap(scene.triangles[0].vertex[1], scene.triangles[0].vertex[2]);
   EXPECT_EQ(marked(scene), 0) << "its back emits nothing";
 }
@@ -147,7 +149,8 @@ TEST(LightPixels, TrianglesBehindTheCameraAreNoneAndThroughItAreClipped) {
   behind.triangles.push_back(
       {{behind.triangles[0].vertex[0], behind.triangles[0].vertex[2], behind.triangles[0].vertex[1]}, 0});
   EXPECT_EQ(marked(behind), 0);
-  // A floor one below the camera, from behind it to far ahead: the lower half of the picture, nearly.
+  // A floor one unit below the camera, from behind it to far ahead, covers nearly the lower half of the
+  // picture.
   Scene floor = light_scene({{-1e6, -1, -5}, {0, -1, 1e6}, {1e6, -1, -5}}, {8, 8});
   EXPECT_EQ(marked(floor), 32);
 }

@@ -11,7 +11,7 @@ using testbench::Scene;
 using testbench::Triangle;
 
 TEST(Faces, NeighboursInOnePlaneShare) {
-  // A quad, its neighbour in the plane, and one folded up by a little.
+  // A quad, a neighbour in its plane, and a neighbour that is folded up slightly.
   const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0), e(2, 0, 0), f(2, 1, 0), up(0, 2, 1e-6);
   EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{a, c, d}, 0}, {{b, e, f}, 0}, {{b, f, c}, 0}, {{d, c, up}, 0}}),
             (std::vector<std::int32_t>{0, 0, 0, 0, 1}));
@@ -19,7 +19,7 @@ TEST(Faces, NeighboursInOnePlaneShare) {
 
 TEST(Faces, OrderAndMaterialDoNotMatter) {
   const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0), e(2, 0, 0), f(2, 1, 0);
-  // The first and the second touch through the third only.
+  // The first and the second touch only through the third.
   EXPECT_EQ(number_faces({{{d, a, c}, 0}, {{b, e, f}, 1}, {{a, b, c}, 2}, {{b, f, c}, 0}}),
             (std::vector<std::int32_t>{0, 0, 0, 0}));
 }
@@ -47,7 +47,7 @@ TEST(Faces, SlantedPlanesAreRecognisedInSpiteOfRounding) {
 
 TEST(Faces, TouchingInAPointOrAPartOfAnEdgeIsNotEnough) {
   const glm::dvec3 a(0, 0, 0), b(2, 0, 0), c(0, 2, 0);
-  // In the same plane: one that shares a corner, and one with half of the edge (a T-junction).
+  // Two triangles in the same plane: one shares a corner, one shares half of an edge (a T-junction).
   EXPECT_EQ(number_faces({{{a, b, c}, 0}, {{b, {4, 0, 0}, {4, 2, 0}}, 0}, {{a, {1, 0, 0}, {0, -1, 0}}, 0}}),
             (std::vector<std::int32_t>{0, 1, 2}));
 }
@@ -68,7 +68,7 @@ TEST(Faces, NoneForNoTriangles) {
   EXPECT_TRUE(number_faces({}).empty());
 }
 
-/// If each looked at all the others, that would be 10^12 looks: more than a test has time for.
+/// Comparing each triangle with all others would take 10^12 steps, more than a test has time for.
 TEST(Faces, AMillionDuplicatesShareOneWithoutLookingAtEachOther) {
   const Triangle triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0};
   const std::vector<std::int32_t> faces = number_faces(std::vector<Triangle>(1000000, triangle));

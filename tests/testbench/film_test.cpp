@@ -19,7 +19,7 @@ struct Sample {
   glm::dvec3 radiance;
 };
 
-/// Magnitudes over 40 powers of two, which doubles cannot add in any order with one result.
+/// Samples over 40 powers of two. Sums of them in double precision depend on the order.
 std::vector<Sample> wild_samples(int pixels, int count) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> mantissa(0.5, 1.0);
@@ -53,7 +53,7 @@ TEST(Film, does_not_depend_on_the_order_of_samples) {
   expect_same_bits(forward, shuffled);
 }
 
-// The test above must be able to fail: the same samples summed in doubles do depend on the order.
+// Shows that the test above can fail: sums of the same samples in double precision depend on the order.
 TEST(Film, plain_doubles_would_depend_on_the_order) {
   std::vector<Sample> samples = wild_samples(1, 3000);
   double forward = 0.0;
@@ -91,7 +91,7 @@ TEST(Film, mean_and_variance_are_those_of_the_samples) {
   for (const double v : values) deviation += (v - mean) * (v - mean);
   EXPECT_EQ(film.mean(0).x, mean);
   EXPECT_EQ(film.mean(0).y, 2.0 * mean);
-  EXPECT_EQ(film.mean(0).z, 0.1);  // equal samples come back exactly
+  EXPECT_EQ(film.mean(0).z, 0.1);  // the mean of equal samples is exact
   EXPECT_DOUBLE_EQ(film.variance_of_mean(0).x, deviation / 3.0 / 4.0);
   EXPECT_DOUBLE_EQ(film.variance_of_mean(0).y, 4.0 * deviation / 3.0 / 4.0);
   EXPECT_NEAR(film.variance_of_mean(0).z, 0.0, 0x1p-52);
@@ -137,7 +137,7 @@ TEST(Film, holds_the_largest_sample_exactly_at_every_scale) {
   }
 }
 
-// 2^32 samples by doubling: the sums stay within 128 bits, one more sample is refused.
+// Reaches 2^32 samples by doubling: sums stay within 128 bits, and one more sample is refused.
 TEST(Film, holds_two_to_the_32_samples_and_no_more) {
   Film film({1, 1}, 1.0);
   film.add(0, glm::dvec3(film.max_radiance()));
@@ -177,8 +177,8 @@ TEST(Film, rgb_is_row_major) {
   EXPECT_EQ(film.rgb(), (std::vector<double>{0, 0.25, 0.5, 1, 1.25, 1.5, 2, 2.25, 2.5, 3, 3.25, 3.5}));
 }
 
-// The digests of 24 zero bytes and of the little-endian bits of 1.0, 2.0, 0.5, from another program (Python's
-// hashlib).
+// The digests of 24 zero bytes and of the little-endian bits of 1.0, 2.0, 0.5, computed with Python's
+// hashlib.
 TEST(Film, sha256_is_over_the_little_endian_bits) {
   Film film({1, 1}, 1.0);
   EXPECT_EQ(film.sha256(), "9d908ecfb6b256def8b49a7c504e6c889c4b0e41fe6ce3e01863dd7b61a20aa0");

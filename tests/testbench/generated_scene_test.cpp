@@ -20,7 +20,7 @@ using testbench::Triangle;
 
 class GeneratedScenes : public testing::TestWithParam<GeneratedScene> {};
 
-/// A ball's number of triangles is 12 times a square.
+/// A ball has 12 k^2 triangles.
 TEST_P(GeneratedScenes, HaveAboutAsManyTrianglesAsAskedFor) {
   for (const int asked : {1000, 10000, 100000}) {
     const double found = double(generate_scene(GetParam(), asked).triangles.size());
@@ -57,7 +57,8 @@ TEST_P(GeneratedScenes, ComeBackFromTheirFilesToTheLastBit) {
 INSTANTIATE_TEST_SUITE_P(Kinds, GeneratedScenes, testing::ValuesIn(testbench::kGeneratedScenes),
                          [](const auto& suite) { return name_of(suite.param); });
 
-/// Fronts look outwards: six times the volume, summed over tetrahedra from any point, is that of a ball.
+/// Fronts face outwards, so six times the signed volumes of tetrahedra from any point add up to that of a
+/// ball.
 double volume(const Scene& scene) {
   double sum = 0.0;
   for (const Triangle& t : scene.triangles)
@@ -67,7 +68,7 @@ double volume(const Scene& scene) {
 }
 
 TEST(GeneratedScene, BallsAreClosedAndTheirFrontsLookOutwards) {
-  // One ball of radius 0.2 * 556: too few triangles for the nine on it.
+  // One ball of radius 0.2 * 556, with too few triangles for nine more balls.
   const double radius = 0.2 * 556.0;
   const double ball = 4.0 / 3.0 * std::acos(-1.0) * radius * radius * radius;
   EXPECT_NEAR(volume(generate_scene(GeneratedScene::sphere_flake, 1900)) / ball, 1.0, 0.01);

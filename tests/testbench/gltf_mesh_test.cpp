@@ -19,8 +19,8 @@ using testbench::InputError;
 using testbench::load_gltf;
 using testbench::Triangle;
 
-/// The parts of a small file that tests change: a triangle at z = 0 whose front looks along +z, in one buffer
-/// of 3 points, 3 bytes of indices and 3 of 16 and 32 bits each.
+/// A small file whose parts tests change: a triangle at z = 0 that faces +z. Its buffer holds 3 points and
+/// the 3 indices in 8, 16 and 32 bits.
 struct Gltf {
   std::string asset = R"("asset":{"version":"2.0"})";
   std::string scenes = R"("scenes":[{"nodes":[0]}])";
@@ -59,7 +59,7 @@ struct Gltf {
     append(long_words);
     return data;
   }
-  /// As .glb: the buffer is the file's own chunk.
+  /// The same as .glb, with the buffer in the file's own chunk.
   std::string glb() const {
     Gltf embedded = *this;
     embedded.buffers = R"("buffers":[{"byteLength":76}])";
@@ -142,7 +142,7 @@ TEST_F(GltfMesh, ReadsWithoutIndicesAndWithStrides) {
   expect_triangle(load(gltf).mesh.triangles.at(0), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
 }
 
-/// All turn the same way round.
+/// All triangles have the same winding.
 TEST_F(GltfMesh, CutsStripsAndFans) {
   Gltf gltf;
   gltf.meshes = R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":3,"mode":5}]}])";
@@ -225,7 +225,7 @@ TEST_F(GltfMesh, FindsTheCameraThatANodeHolds) {
   const GltfFile file = load(gltf);
   ASSERT_TRUE(file.camera);
   EXPECT_EQ(file.camera->camera.position, glm::dvec3(1, 2, 3));
-  EXPECT_NEAR(file.camera->camera.direction.z, 1.0, 1e-15);  // half a turn about y
+  EXPECT_NEAR(file.camera->camera.direction.z, 1.0, 1e-15);  // turned by 180 degrees about y
   EXPECT_NEAR(file.camera->camera.up.y, 1.0, 1e-15);
   EXPECT_EQ(file.camera->camera.vertical_field_of_view_radians, 0.5);
   EXPECT_EQ(file.camera->aspect_ratio, 1.5);
@@ -276,7 +276,7 @@ TEST_F(GltfMesh, RefusesABinaryFileCutOffAnywhere) {
   }
 }
 
-/// Whatever stands in a file: a mesh or one line, never a crash.
+/// Any content of a file gives a mesh or one line of error, never a crash.
 TEST_F(GltfMesh, SurvivesDamagedFiles) {
   const std::string whole = Gltf{}.glb();
   std::mt19937 random(1);

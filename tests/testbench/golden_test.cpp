@@ -57,7 +57,7 @@ const std::string kOneRun = product(
     "chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = [\"both\"]\ntimings = [\"lt\"]\n");
 
 TEST_F(Golden, GridIsEveryCombination) {
-  const GoldenGrid read = grid(kHead + kTwoChips + kOneRun + kTwoChips);  // each once
+  const GoldenGrid read = grid(kHead + kTwoChips + kOneRun + kTwoChips);  // each run appears once
   EXPECT_EQ(read.film.width, 6);
   ASSERT_EQ(read.runs.size(), 17u);
   EXPECT_EQ(read.runs[0].file, "cornell_box-csx600.csv");

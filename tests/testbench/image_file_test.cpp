@@ -53,7 +53,7 @@ std::string content(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// 3 x 2; every pixel of its own colour, two samples each but the last, which has none.
+/// A film of 3 x 2 pixels. Each pixel has a different colour and two samples; the last has no sample.
 Film small_film() {
   Film film({3, 2}, 1.0);
   for (int pixel = 0; pixel < 5; ++pixel) {
@@ -232,7 +232,7 @@ TEST_F(ImageFileTest, failing_writer_leaves_the_old_content_and_no_temporary_fil
   EXPECT_EQ(files(), std::vector<std::string>{"a.txt"});
 }
 
-/// Limits the size of files this process may write, as a full disk would; restores everything at the end.
+/// Limits the size of files that this process may write, like a full disk. The destructor removes the limit.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -38,8 +38,7 @@ path_tracer::ProgramConfig with_tree() {
   return config;
 }
 
-/// Two lights of areas 2 and 1 and of radiances 3 and 12 (sums of channels), and a dark triangle between
-/// them.
+/// Two lights of areas 2 and 1 with radiances 3 and 12 (sums of channels), and a dark triangle between them.
 Scene three_triangles() {
   Scene scene;
   scene.name = "three";
@@ -55,21 +54,21 @@ Scene three_triangles() {
   return scene;
 }
 
-/// The power of two by which a record's edges are longer than the triangle's.
+/// The power of two by which a record's edges are scaled.
 double scale_of(const TriangleRecord& record, const Triangle& triangle) {
   const double scale =
       glm::length(vector(record.edge1)) / glm::length(triangle.vertex[1] - triangle.vertex[0]);
   return std::exp2(std::round(std::log2(scale)));
 }
 
-/// What the firmware is told of a triangle, but for the scale.
+/// Compares the record of a triangle with the scene, up to the scale.
 void expect_triangle(const TriangleRecord& record, const Scene& scene, int number) {
   const Triangle& triangle = scene.triangles[std::size_t(number)];
   const double scale = scale_of(record, triangle);
   EXPECT_EQ(vector(record.vertex), triangle.vertex[0]);
   EXPECT_EQ(vector(record.edge1), (triangle.vertex[1] - triangle.vertex[0]) * scale);
   EXPECT_EQ(vector(record.edge2), (triangle.vertex[2] - triangle.vertex[0]) * scale);
-  // Made in extended precision.
+  // The firmware computes `back` in extended precision.
   const double rounding =
       1e-15 * glm::length(vector(record.edge1)) * glm::length(vector(record.edge2)) / scale;
   EXPECT_LT(glm::length(vector(record.back) + testbench::area_normal(triangle) * scale), rounding + 1e-300);
@@ -94,7 +93,7 @@ TEST(MonoImage, HoldsTrianglesAndSurfacesInTheScenesOrder) {
   EXPECT_EQ(vector(record(image, image.layout.surfaces, 2).normal), glm::dvec3(0, 1, 0));
 }
 
-/// Leaf by leaf; each light's own once more behind them.
+/// Triangles lie leaf by leaf, and behind them the triangles of each light again.
 TEST(MonoImage, WithATreeHoldsEachTriangleOnceAndThoseOfLightsAgain) {
   const Scene scene = test_support::triangle_soup(60, 3, {4, 4});
   const MonoImage image = make_mono_image(scene, 96, with_tree());
@@ -118,8 +117,8 @@ TEST(MonoImage, WithATreeHoldsEachTriangleOnceAndThoseOfLightsAgain) {
   }
 }
 
-/// Any of the others may be nearer than the one that a shadow ray was sent to, so that it may not begin with
-/// it.
+/// Any other triangle of the face may be nearer than the shadow ray's target, so the shadow ray must not
+/// begin with the target.
 TEST(MonoImage, AFaceOfManyTrianglesHasNoRunForShadowRays) {
   Scene scene = three_triangles();
   const std::int32_t light = scene.triangles[0].material;
@@ -137,7 +136,7 @@ TEST(MonoImage, AFaceOfManyTrianglesHasNoRunForShadowRays) {
   EXPECT_LT(without, image.layout.light_count);
 }
 
-/// No ray starts farther from a vertex: neither at the camera nor on a triangle.
+/// No ray starts farther from a vertex than `reach`, neither at the camera nor on a triangle.
 TEST(MonoImage, ReachSpansSceneAndCamera) {
   Scene scene = three_triangles();
   scene.camera.position = {100, 0, 0};
@@ -150,7 +149,7 @@ TEST(MonoImage, ReachSpansSceneAndCamera) {
 TEST(MonoImage, LightsAreChosenByTheirPower) {
   const MonoImage image = make_mono_image(three_triangles(), 96, {});
   ASSERT_EQ(image.layout.light_count, 2);
-  // Area x sum of channels: 2 x 3 = 6 and 1 x 12 = 12.
+  // Area times sum of channels: 2 x 3 = 6 and 1 x 12 = 12.
   EXPECT_DOUBLE_EQ(record(image, image.layout.light_cdf, 0), 6.0 / 18.0);
   EXPECT_EQ(record(image, image.layout.light_cdf, 1), 1.0);
   const auto dim = record(image, image.layout.lights, 0);
@@ -167,7 +166,7 @@ TEST(MonoImage, LightsAreChosenByTheirPower) {
   EXPECT_DOUBLE_EQ(bright.inverse_pdf, 1.0 / (12.0 / 18.0));
 }
 
-/// A square light of two triangles, a lone triangle, and a parallelogram that is no rectangle.
+/// A square light of two triangles, a single triangle, and a parallelogram that is not a rectangle.
 Scene lights_of_all_shapes() {
   Scene scene = three_triangles();
   const auto quadrilateral = [&](glm::dvec3 corner, glm::dvec3 edge1, glm::dvec3 edge2) {
@@ -197,7 +196,7 @@ TEST(MonoImage, HalvesOfARectangleAreOneLightWhenSampledBySolidAngle) {
   EXPECT_EQ(glm::cross(edge1, edge2), glm::dvec3(0, 0, 6));
   const glm::dvec3 middle = vector(rectangle.vertex) + 0.5 * (edge1 + edge2);
   EXPECT_EQ(middle, glm::dvec3(1, 1.5, 0));
-  // Areas 6, 1/2, 1 and 1 of one radiance: the density of a point is the same on all, 1 / 8.5.
+  // Areas of 6, 1/2, 1 and 1 with one radiance: the density of a point is 1 / 8.5 on all.
   EXPECT_DOUBLE_EQ(record(image, image.layout.light_cdf, 0), 6 / 8.5);
   for (int light = 0; light < 4; ++light) {
     const auto found = record(image, image.layout.lights, light);
@@ -208,7 +207,7 @@ TEST(MonoImage, HalvesOfARectangleAreOneLightWhenSampledBySolidAngle) {
   }
 }
 
-/// A rectangle; a triangle alone; two triangles of one face that are lights apart.
+/// A rectangle, a single triangle, and two triangles of one face that are separate lights.
 TEST(MonoImage, WithATreeALightHasAllTrianglesOfItsFace) {
   path_tracer::ProgramConfig config = with_tree();
   config.light_sampling = path_tracer::LightSampling::solid_angle;
@@ -266,7 +265,7 @@ TEST(MonoImage, SceneWithoutLightIsRefusedByName) {
   EXPECT_THROW(make_mono_image(scene, 96, {}), testbench::InputError);
 }
 
-/// The direction of a film position, x to the right and y down, in pixels.
+/// The direction through a film position in pixels, x to the right and y down.
 glm::dvec3 direction(const CameraRecord& camera, double x, double y) {
   return glm::normalize(vector(camera.corner) + x * vector(camera.right) + y * vector(camera.down));
 }
@@ -282,7 +281,7 @@ TEST(MonoImage, CameraSpansTheFieldOfView) {
   EXPECT_EQ(camera.width, 6);
   EXPECT_EQ(camera.height, 4);
   const auto expect_direction = [&](double x, double y, double to_right, double up) {
-    const double half = std::tan(0.4);  // of the height; a pixel is square
+    const double half = std::tan(0.4);  // tangent of half the vertical field of view; pixels are square
     const glm::dvec3 expected = glm::normalize(scene.camera.direction + right * (to_right * half * 1.5) +
                                                scene.camera.up * (up * half));
     EXPECT_LT(glm::length(direction(camera, x, y) - expected), 1e-15) << x << ", " << y;
@@ -293,7 +292,7 @@ TEST(MonoImage, CameraSpansTheFieldOfView) {
   expect_direction(0, 4, -1, -1);
   expect_direction(6, 4, 1, -1);
   expect_direction(0.5, 0.5, -2.5 / 3, 1.5 / 2);
-  // The vertical field of view lies between the middles of the upper and the lower edge.
+  // The vertical field of view is the angle between the middles of the upper and the lower edge.
   EXPECT_NEAR(std::acos(glm::dot(direction(camera, 3, 0), direction(camera, 3, 4))), 0.8, 1e-14);
 }
 

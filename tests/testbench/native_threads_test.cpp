@@ -67,7 +67,7 @@ TEST_F(NativeThreads, TwoHandBlocksToAndFro) {
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(blocks[std::size_t(i)], i);
 }
 
-/// Says when its stack is unwound.
+/// Records when its stack is unwound.
 struct Frame {
   int& left;
   ~Frame() { ++left; }

@@ -42,8 +42,8 @@ class NodeFormats : public testing::TestWithParam<std::tuple<NodeFormat, int>> {
   }
 };
 
-/// Numbers of every magnitude, and boxes flat in some axes. Steps are of scenes of single precision's unit,
-/// whose coordinates are no more than their reach has doubles for.
+/// Random boxes of every magnitude, some of them flat. Quantised boxes are in the unit of nodes, where the
+/// largest coordinates are as far from the reach as doubles can be.
 TEST_P(NodeFormats, NeverShrinkABox) {
   std::mt19937_64 random(1);
   const double largest = layout.format == NodeFormat::quantised8 ? 16.0 : 307.0;
@@ -76,8 +76,8 @@ TEST_P(NodeFormats, KeepTheBoxesOfEveryMesh) {
   }
 }
 
-/// What a stored box adds to the real one, at most, on each side: an ulp of fp32, or one of 255 steps, which
-/// are at most twice as long as they need be.
+/// A stored box exceeds the exact one on each side by at most one ulp of fp32, or by one of 255 steps, which
+/// are at most twice as long as necessary.
 TEST_P(NodeFormats, GrowABoxByAStepAtMost) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> number(-1.0, 1.0);

@@ -34,7 +34,7 @@ class ObjMeshTest : public testing::Test {
 
   Mesh load(const std::string& obj) { return load_obj_mesh(write("mesh.obj", "mtllib m.mtl\n" + obj)); }
 
-  /// The error's line, after checks that it is one line and names every part.
+  /// The error's message. Checks that it is one line and contains every part.
   void expect_error(const std::string& obj, const std::vector<std::string>& parts) {
     expect_error_of([&] { load(obj); }, parts);
   }
@@ -97,7 +97,7 @@ TEST_F(ObjMeshTest, reads_crlf_comments_groups_and_relative_indices) {
   EXPECT_EQ(mesh.triangles[0].vertex[2], glm::dvec3(0, 1, 0));
 }
 
-// The shorter diagonal of this quad is 2-4; the fan from the first vertex uses 1-3.
+// The shorter diagonal of this quad is 2-4, but the fan from the first vertex uses 1-3.
 TEST_F(ObjMeshTest, cuts_convex_polygons_into_a_fan_from_the_first_vertex) {
   const Mesh quad = load("v 0 0 0\nv 2 -1 0\nv 4 0 0\nv 2 1 0\nusemtl grey\nf 1 2 3 4\n");
   ASSERT_EQ(quad.triangles.size(), 2U);
@@ -109,7 +109,7 @@ TEST_F(ObjMeshTest, cuts_convex_polygons_into_a_fan_from_the_first_vertex) {
   for (const auto& t : pentagon.triangles) EXPECT_EQ(t.vertex[0], glm::dvec3(0));
 }
 
-// A dart: vertex 3 is dented inwards, so only the diagonal 1-3 lies inside; listed from each of its vertices.
+// A dart, listed from each of its vertices: vertex 3 is concave, so only the diagonal 1-3 lies inside.
 TEST_F(ObjMeshTest, cuts_concave_quads_along_the_inner_diagonal) {
   for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
     const Mesh mesh = load(std::string("v 0 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nusemtl grey\n") + face + "\n");
@@ -125,7 +125,7 @@ TEST_F(ObjMeshTest, cuts_concave_quads_along_the_inner_diagonal) {
 }
 
 TEST_F(ObjMeshTest, refuses_a_polygon_no_fan_covers) {
-  // A comb with two dents in opposite directions (an S), and a quad that crosses itself.
+  // A polygon with two dents in opposite directions (an S), and a quad that crosses itself.
   expect_error(
       "v 0 0 0\nv 3 0 0\nv 3 2 0\nv 1 2 0\nv 1 3 0\nv 3 3 0\nv 3 4 0\nv 0 4 0\nv 0 1.9 0\nv 2 1.9 0\nv 2 1 "
       "0\nv 0 1 "
@@ -245,7 +245,7 @@ TEST_F(ObjMeshTest, loads_a_million_triangles_quickly) {
   EXPECT_NEAR(total_area(mesh), 1.0, 1e-9);
   RecordProperty("load_seconds", std::to_string(seconds.count()));
   EXPECT_LT(seconds.count(),
-            60.0);  // about 1 s on the development machine; quadratic behaviour would take hours
+            60.0);  // takes about 1 s; quadratic behaviour would take hours
 }
 
 }  // namespace

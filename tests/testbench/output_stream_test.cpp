@@ -46,7 +46,7 @@ class OutputStream : public testing::Test {
   fs::path directory;
 };
 
-/// A program of this name comes first in PATH.
+/// Puts a program of this name first in PATH.
 class FakeProgram {
  public:
   FakeProgram(const fs::path& directory, const std::string& name, const std::string& script)

@@ -67,7 +67,7 @@ TEST_F(PointStoreTest, DropsALineThatAKillCutOff) {
 }
 
 TEST_F(PointStoreTest, AFullDiskLosesNothingThatWasFinished) {
-  // A limit on the file's size in the place of a small disk: write() takes a part of the line, then nothing.
+  // A limit on the file's size stands in for a full disk: write() takes a part of the line, then fails.
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit old_limit{};
   getrlimit(RLIMIT_FSIZE, &old_limit);

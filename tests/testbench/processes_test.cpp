@@ -26,7 +26,7 @@ void sleep_milliseconds(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
-/// Lines that processes append to one file.
+/// A file to which several processes append lines.
 class Journal {
  public:
   Journal() {

@@ -1,5 +1,5 @@
-// A replayed run equals the full one in every statistic, for every parameter that is said to change timing
-// only.
+// A replayed run equals the full run in every statistic, for every parameter that is declared to change
+// timing only.
 
 #include "testbench/sweep/replay.hpp"
 
@@ -29,11 +29,7 @@ using testbench::Scene;
 
 class Replay : public test_support::SystemCFixture {
  protected:
-  static void new_context() {
-    sc_core::sc_curr_simcontext = new sc_core::sc_simcontext();
-    sc_core::sc_default_global_context = sc_core::sc_curr_simcontext;
-  }
-  /// Everything but the host's times.
+  /// The statistics without the simulator's times.
   static std::string statistics(const RenderOptions& options, const RenderResult& result) {
     nlohmann::ordered_json json = testbench::render_statistics({"scene", options, false}, result);
     json.erase("host");
@@ -83,7 +79,7 @@ TEST_F(Replay, EqualsTheFullRunWherePathsAreFlushed) {
   EXPECT_EQ(replayed(recording, options), in_full(scene, options));
 }
 
-/// Another value than the default, as far from it as the run bears.
+/// A value other than the default, as far from it as a run allows.
 model::ParameterValue other_value(const model::ParameterInfo& parameter) {
   if (parameter.key == "chip.clock_hz") return 500e6;
   if (parameter.key == "ddr.size_bytes") return std::int64_t{64} << 20;
@@ -111,9 +107,8 @@ model::ParameterValue other_value(const model::ParameterInfo& parameter) {
   return std::string(names[0] == std::get<std::string>(parameter.default_value) ? names[1] : names[0]);
 }
 
-/// The declaration `Effect::timing` is checked, parameter by parameter: the chip with another value makes the
-/// same image and, told by every one of its statistics, was asked the same as the recording of the default
-/// chip.
+/// Checks the declaration `Effect::timing` parameter by parameter: the chip with another value makes the same
+/// image, and all of its statistics equal those of a replay of the default chip's recording.
 TEST_F(Replay, EveryParameterDeclaredTimingOnlyLeavesImageAndStreamAlone) {
   const Scene scene = small_cornell_box({8, 6});
   const RenderOptions options = render_options(Program::full, 2);
@@ -155,7 +150,7 @@ TEST_F(Replay, OfAnotherWidthIsRefused) {
   EXPECT_THROW(replayed(recording, options), testbench::RunError);
 }
 
-/// An audit that finds nothing must be able to find something.
+/// Shows that an audit can find a difference.
 TEST_F(Replay, AnAuditFindsTheRecordingOfAnotherRun) {
   const Scene scene = small_cornell_box({8, 6});
   testbench::SweepPoint point;

@@ -17,7 +17,7 @@ TEST(RunTimes, MedianOfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
 }
 
 TEST(RunTimes, RatioIsOfRunsThatFollowedEachOther) {
-  // The second repetition met a machine ten times slower: medians alone would give 20 / 3.
+  // The machine was ten times slower during the second repetition. The ratio of medians would be 20 / 3.
   const RunTimes slow{{2, 20, 200}};
   const RunTimes fast{{1, 10, 3}};
   EXPECT_EQ(ratio(slow, fast), 2);

@@ -99,7 +99,8 @@ TEST_F(SceneFileTest, camera_is_orthonormal_from_either_form) {
   expect_near(huge.camera.up, {0, 0, 1});
 }
 
-// (1, 0, 0) scaled by 2, turned about x, then y (90 degrees: +x to -z), then z (90: +x to +y), then moved.
+// (1, 0, 0) is scaled by 2, rotated about x, then about y (90 degrees: +x to -z), then about z (90 degrees:
+// +x to +y), then translated.
 TEST_F(SceneFileTest, transforms_scale_then_rotate_then_translate) {
   const Scene scene = load(std::string(kCamera) + kMesh + kMesh +
                            "scale = 2\nrotate_degrees = [90, 90, 90]\ntranslate = [10, 20, 30]\n");

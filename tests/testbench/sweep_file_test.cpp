@@ -28,7 +28,7 @@ class SweepFileTest : public testing::Test {
     return name;
   }
   SweepFile load(const std::string& text) { return testbench::load_sweep_file(path(text)); }
-  /// Of the first key of the first axis.
+  /// Values of the first key of the first axis.
   Values values(const std::string& axis) {
     const SweepFile sweep = load("[[axis]]\n" + axis);
     Values found;

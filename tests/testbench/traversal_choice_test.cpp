@@ -40,7 +40,7 @@ TEST(TraversalChoice, CostsGrowWithTheScene) {
   }
 }
 
-/// The tree lives on programmed I/O, brute force on the mono data cache.
+/// The tree depends on programmed I/O, brute force on the mono data cache.
 TEST(TraversalChoice, FollowsTheChip) {
   model::ChipConfig slow_io = kChip;
   slow_io.pio.per_pe_cycles = 400;
@@ -50,7 +50,7 @@ TEST(TraversalChoice, FollowsTheChip) {
   EXPECT_EQ(choose_traversal(200, TreeShape{}, slow_io).traversal, Traversal::brute_force);
 }
 
-/// Whether the program finds room in the SRAM, which is of the whole chip's PEs.
+/// Whether the program fits the SRAM of the chip's PEs.
 bool fits(const ProgramConfig& program) {
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 64}, kChip.chip.pes, program);
   testbench::NativeMachine machine(kChip.chip.pes, kChip.poly.sram_bytes, layout.total_bytes);
@@ -77,7 +77,7 @@ TEST(ResidentNodes, AreAsManyAsFit) {
     }
 }
 
-/// As `program` wants it, as it fits.
+/// `program` with its tree reduced until it fits.
 ProgramConfig fitted(ProgramConfig program, const testbench::TreeWishes& wishes = {},
                      std::size_t triangles = 1000) {
   program.tree = testbench::tree_that_fits(triangles, program, kChip, wishes);
@@ -111,7 +111,7 @@ TEST(TreeThatFits, HasAShorterStackThenSmallerTreelets) {
   longer.tree.stack_entries *= 2;
   EXPECT_FALSE(fits(longer)) << longer.tree.stack_entries;
 
-  program.n = 3;  // ten records of a ray
+  program.n = 3;  // needs ten buffers of ray records
   ASSERT_FALSE(fits(program));
   const ProgramConfig smaller = fitted(program, floats);
   EXPECT_TRUE(fits(smaller));
@@ -128,12 +128,12 @@ TEST(TreeThatFits, LeavesWishesAlone) {
   EXPECT_EQ(wished.tree.stack_entries, 4);
   EXPECT_EQ(fitted(program, {{}, 1}).tree.stack_entries, 1);
   program.n = 1;
-  program.tree.resident_nodes = 64;  // of which no tree fits
+  program.tree.resident_nodes = 64;  // more than fit with any tree
   EXPECT_EQ(fitted(program).tree.stack_entries, program.tree.stack_entries);
   EXPECT_EQ(fitted(program).tree.treelet_nodes, program.tree.treelet_nodes);
 }
 
-/// What the user asks for is weighed, too, when a way is chosen.
+/// The user's options enter the estimate by which a traversal is chosen.
 TEST(TreeWishes, ChangeTheEstimate) {
   const ProgramConfig program;
   const path_tracer::TreeShape& tree = program.tree;

@@ -33,7 +33,8 @@ Box point(double x, double y, double z) {
 
 class TreeImageOf : public testing::TestWithParam<test_support::Mesh> {};
 
-/// From slot 0 every triangle is met once, in a box that contains its own, within the levels that are told.
+/// From slot 0 every triangle is reached once, in a box that contains its own, within the stated number of
+/// levels.
 TEST_P(TreeImageOf, LeadsToEveryTriangleInsideItsBoxes) {
   for (const path_tracer::NodeLayout& layout : test_support::node_layouts()) {
     const std::vector<Box> boxes =
@@ -86,8 +87,8 @@ TEST(TreeImage, OfNothingIsARootThatLeadsNowhere) {
               ChildReference::kNowhere);
 }
 
-/// One clump, and points on each axis each a 32nd as far out as the one before: the heuristic would take off
-/// a few a level.
+/// One clump, and points on each axis, each 1/40 as far out as the one before. The heuristic separates only a
+/// few of them on each level.
 std::vector<Box> clump_and_outliers(int clump) {
   std::vector<Box> boxes(std::size_t(clump), point(0, 0, 0));
   double distance = 1.0;
@@ -110,7 +111,7 @@ TEST(TreeImage, KeepsToTheLevelsThatARayCanFollow) {
   }
 }
 
-/// Of ten times as many, or with two children a node, it could not be so.
+/// With ten times as many boxes, or with two children per node, the heuristic's tree would be too deep.
 TEST(TreeImage, IsBalancedWhereItWouldBeTooDeep) {
   const std::vector<Box> boxes = clump_and_outliers(600000);
   for (const auto& [width, levels] : std::map<int, int>{{2, 20}, {4, 10}}) {
@@ -119,7 +120,7 @@ TEST(TreeImage, IsBalancedWhereItWouldBeTooDeep) {
     shape.leaf_triangles = 1;
     const TreeImage image = make_tree_image(boxes, shape);
     EXPECT_EQ(image.triangles.size(), boxes.size());
-    EXPECT_LE(image.levels, levels);  // the first power of the width that holds them
+    EXPECT_LE(image.levels, levels);  // the smallest number of levels that can hold all boxes
   }
 }
 

@@ -38,7 +38,7 @@ TEST_P(TreeletsOf, HaveASlotForEachNodeAndTheRootFirst) {
   EXPECT_EQ(treelets.slot_of_node[0], 0);
 }
 
-/// Two treelets that are less than half full would fit one.
+/// Two treelets that are less than half full would fit into one.
 TEST_P(TreeletsOf, AreFilled) {
   std::vector<int> nodes(std::size_t(treelets.count), 0);
   int resident = 0;
@@ -51,7 +51,7 @@ TEST_P(TreeletsOf, AreFilled) {
   EXPECT_LE(std::count_if(nodes.begin(), nodes.end(), [&](int n) { return 2 * n < sizes.per_treelet; }), 1);
 }
 
-/// Every ray visits them first.
+/// Rays visit the resident nodes first, so the parent of a resident node is resident.
 TEST_P(TreeletsOf, ResidentNodesHangTogether) {
   for (std::int32_t n = 0; n < std::int32_t(bvh.nodes.size()); ++n)
     for (int i = 0; i < bvh.nodes[std::size_t(n)].child_count; ++i) {
@@ -62,7 +62,7 @@ TEST_P(TreeletsOf, ResidentNodesHangTogether) {
     }
 }
 
-/// Walks the encoded tree from slot 0.
+/// Visits the encoded tree from slot 0.
 TEST_P(TreeletsOf, LeadFromTheRootToEveryTriangle) {
   const NodeLayout layout{NodeFormat::fp32, 4};
   const auto bytes = encode_treelets(bvh, treelets, layout);

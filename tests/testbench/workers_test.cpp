@@ -15,7 +15,7 @@ using testbench::Workers;
 
 constexpr int kForEver = 20'000;
 
-/// Counts its orders; crashes when told to.
+/// A worker that counts its orders and crashes on request.
 Workers::Answer counting() {
   return [orders = 0](const std::string& order) mutable {
     if (order == "crash") std::abort();
@@ -79,7 +79,7 @@ TEST(Workers, EndWithTheProcessThatStartedThem) {
   ASSERT_EQ(read(ends[0], &worker, sizeof(worker)), ssize_t(sizeof(worker)));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  // A zombie still takes signal 0 until somebody reaps it, so its state is what counts.
+  // A zombie accepts signal 0 until it is reaped, so the test reads the process's state.
   const auto runs = [&] {
     const std::string state = "/proc/" + std::to_string(worker) + "/stat";
     return std::system(("grep -q ') [RS] ' " + state + " 2> /dev/null").c_str()) == 0;

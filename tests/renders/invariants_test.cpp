@@ -2,7 +2,6 @@
 // statistics.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -21,6 +20,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
@@ -229,9 +229,7 @@ TEST_F(Invariants, StatisticsRepeatByteForByte) {
 }
 
 TEST_F(Invariants, WavesLogsAndTimelinesChangeNothing) {
-  const std::filesystem::path directory =
-      std::filesystem::path(testing::TempDir()) / ("invariants_" + std::to_string(getpid()));
-  std::filesystem::create_directory(directory);
+  const test_support::TemporaryDirectory directory;
   const Scene scene = small_cornell_box({17, 5});
   for (const Program program : {Program::segments, Program::direct, Program::full}) {
     for (const int n : {0, 1, 3}) {
@@ -243,9 +241,9 @@ TEST_F(Invariants, WavesLogsAndTimelinesChangeNothing) {
         const std::string plain = statistics(options, without_waves);
         RenderOptions with_waves = options;
         testbench::WaveOptions& waves =
-            with_waves.observation.waves.emplace(testbench::WaveOptions{directory / "waves.vcd", {}});
-        with_waves.observation.transactions = directory / "transactions.jsonl";
-        with_waves.observation.timeline = directory / "timeline.json";
+            with_waves.observation.waves.emplace(testbench::WaveOptions{directory.path() / "waves.vcd", {}});
+        with_waves.observation.transactions = directory.path() / "transactions.jsonl";
+        with_waves.observation.timeline = directory.path() / "timeline.json";
         waves.config.selection.level = model::WaveLevel::detail;
         EXPECT_EQ(statistics(options, on_chip(scene, with_waves)), plain) << "n " << n;
         EXPECT_GT(std::filesystem::file_size(waves.file), 10000u);
@@ -255,7 +253,6 @@ TEST_F(Invariants, WavesLogsAndTimelinesChangeNothing) {
       }
     }
   }
-  std::filesystem::remove_all(directory);
 }
 
 /// Checks that spans follow each other without gaps, and sums them.

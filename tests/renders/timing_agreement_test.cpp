@@ -10,6 +10,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
@@ -97,11 +98,11 @@ TEST_F(TimingAgreement, WavesLogsAndTimelinesChangeNoCycleOfAnApproximatelyTimed
       options.program.n = n;
       options.chip.host.latency_cycles = host_latency_cycles;
       const RenderResult plain = run(scene, options, TimingStyle::approximately_timed);
-      const std::string name = testing::TempDir() + "timing_agreement";
-      options.observation.waves.emplace(testbench::WaveOptions{name + ".vcd", {}});
+      const test_support::TemporaryDirectory directory;
+      options.observation.waves.emplace(testbench::WaveOptions{directory.path() / "run.vcd", {}});
       options.observation.waves->config.selection.level = model::WaveLevel::detail;
-      options.observation.transactions = name + ".jsonl";
-      options.observation.timeline = name + ".json";
+      options.observation.transactions = directory.path() / "run.jsonl";
+      options.observation.timeline = directory.path() / "run.json";
       const RenderResult with_waves = run(scene, options, TimingStyle::approximately_timed);
       EXPECT_EQ(testbench::to_json(*with_waves.chip).dump(), testbench::to_json(*plain.chip).dump());
       EXPECT_EQ(with_waves.observation_failures, "");

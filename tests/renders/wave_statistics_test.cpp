@@ -2,7 +2,6 @@
 // loosely and approximately timed.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
+#include "tests/support/temporary_directory.hpp"
 #include "tests/support/vcd_reader.hpp"
 
 namespace {
@@ -31,8 +31,6 @@ using Json = nlohmann::json;
 class WaveStatistics : public test_support::SystemCFixture, public testing::WithParamInterface<TimingStyle> {
  protected:
   WaveStatistics() {
-    directory_ = std::filesystem::path(testing::TempDir()) / ("wave_statistics_" + std::to_string(getpid()));
-    std::filesystem::create_directory(directory_);
     options_ = test_support::render_options(path_tracer::Program::full, 24);
     options_.timing = GetParam();
     options_.observation.waves.emplace(testbench::WaveOptions{path("run.vcd"), {}});
@@ -40,9 +38,8 @@ class WaveStatistics : public test_support::SystemCFixture, public testing::With
     options_.observation.transactions = path("run.jsonl");
     options_.observation.timeline = path("run.json");
   }
-  ~WaveStatistics() override { std::filesystem::remove_all(directory_); }
 
-  std::filesystem::path path(const std::string& name) const { return directory_ / name; }
+  std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
 
   testbench::ChipStatistics run() {
     const RenderResult result = testbench::render_on_chip(test_support::small_cornell_box({17, 5}), options_);
@@ -74,7 +71,7 @@ class WaveStatistics : public test_support::SystemCFixture, public testing::With
   testbench::RenderOptions options_;
 
  private:
-  std::filesystem::path directory_;
+  test_support::TemporaryDirectory directory_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Timing, WaveStatistics,

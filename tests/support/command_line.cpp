@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/temporary_directory.hpp"
+
 namespace test_support {
 namespace {
 
@@ -16,12 +18,6 @@ constexpr unsigned kMostSeconds = 100;
 
 std::filesystem::path output_of(pid_t child, const std::filesystem::path& directory, const char* name) {
   return directory.string() + "." + std::to_string(child) + "." + name;
-}
-
-std::string read_file(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 void redirect(int descriptor, const std::filesystem::path& file) {

@@ -8,6 +8,7 @@
 #include "testbench/bvh/balanced_bvh.hpp"
 #include "testbench/bvh/build_bvh.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/input_error.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace {
@@ -126,12 +127,8 @@ TEST(Bvh, NothingHasNoNodes) {
 
 TEST(Bvh, OptionsOutOfRangeAreNamed) {
   const auto message = [](const BvhOptions& options) {
-    try {
-      build_bvh(test_support::mesh(test_support::Mesh::one), options);
-    } catch (const testbench::InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("built");
+    return test_support::input_error_of(
+        [&] { build_bvh(test_support::mesh(test_support::Mesh::one), options); });
   };
   EXPECT_EQ(message({1, 4}), "BVH: width is 1, allowed are 2 to 8");
   EXPECT_EQ(message({9, 4}), "BVH: width is 9, allowed are 2 to 8");

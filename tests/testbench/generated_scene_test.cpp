@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "testbench/bvh/bvh.hpp"
 #include "testbench/scene/mesh.hpp"
 #include "testbench/scene/save_scene.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
@@ -34,12 +34,10 @@ TEST_P(GeneratedScenes, HoldNoTriangleWithoutArea) {
 }
 
 TEST_P(GeneratedScenes, ComeBackFromTheirFilesToTheLastBit) {
-  const std::filesystem::path directory =
-      std::filesystem::path(testing::TempDir()) / ("generated_" + name_of(GetParam()));
+  const test_support::TemporaryDirectory directory;
   const Scene scene = generate_scene(GetParam(), 1000);
-  save_scene(scene, directory);
-  const Scene loaded = testbench::load_scene(directory);
-  std::filesystem::remove_all(directory);
+  save_scene(scene, directory.path());
+  const Scene loaded = testbench::load_scene(directory.path());
   ASSERT_EQ(loaded.triangles.size(), scene.triangles.size());
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     for (int vertex = 0; vertex < 3; ++vertex)

@@ -4,13 +4,14 @@
 
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <limits>
 #include <random>
 
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
@@ -75,19 +76,9 @@ struct Gltf {
   }
 };
 
-class GltfMesh : public testing::Test {
+class GltfMesh : public test_support::DirectoryFixture {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = std::filesystem::path(testing::TempDir()) / (std::string("gltf_mesh_") + test->name());
-    std::filesystem::create_directories(directory_);
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    std::ofstream(directory_ / name, std::ios::binary) << text;
-    return directory_ / name;
-  }
+  using DirectoryFixture::write;
   std::filesystem::path write(const Gltf& gltf) {
     write("a.bin", gltf.binary());
     return write("a.gltf", gltf.json());
@@ -95,22 +86,12 @@ class GltfMesh : public testing::Test {
   GltfFile load(const Gltf& gltf) { return load_gltf(write(gltf)); }
 
   static std::string error_of(const std::filesystem::path& file) {
-    try {
-      load_gltf(file);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::input_error_of([&] { load_gltf(file); });
   }
-  void expect_error(const Gltf& gltf, const std::vector<std::string>& parts) {
-    const std::string message = error_of(write(gltf));
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_NE(message.find("a.gltf: "), std::string::npos) << message;
-    EXPECT_NE(message.find("allowed: "), std::string::npos) << message;
+  void expect_error(const Gltf& gltf, std::vector<std::string> parts) {
+    parts.insert(parts.end(), {"a.gltf: ", "allowed: "});
+    test_support::expect_input_error([&] { load_gltf(write(gltf)); }, parts);
   }
-
-  std::filesystem::path directory_;
 };
 
 void expect_triangle(const Triangle& triangle, const glm::dvec3& a, const glm::dvec3& b,

@@ -21,6 +21,8 @@
 #include "testbench/film/image_file.hpp"
 #include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
@@ -29,29 +31,15 @@ using testbench::Film;
 using testbench::InputError;
 using testbench::RunError;
 
-class ImageFileTest : public testing::Test {
+class ImageFileTest : public test_support::DirectoryFixture {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = fs::path(testing::TempDir()) / (std::string("image_file_") + test->name());
-    fs::create_directories(directory_);
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(directory_))
       names.push_back(entry.path().filename().string());
     return names;
   }
-
-  fs::path directory_;
 };
-
-std::string content(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// A film of 3 x 2 pixels. Each pixel has a different colour and two samples; the last has no sample.
 Film small_film() {
@@ -115,8 +103,8 @@ TEST_F(ImageFileTest, exr_holds_variance_samples_and_provenance) {
 TEST_F(ImageFileTest, exr_bytes_are_the_same_every_time) {
   write_exr(directory_ / "a.exr", small_film(), {{"key", "value"}});
   write_exr(directory_ / "b.exr", small_film(), {{"key", "value"}});
-  EXPECT_FALSE(content(directory_ / "a.exr").empty());
-  EXPECT_EQ(content(directory_ / "a.exr"), content(directory_ / "b.exr"));
+  EXPECT_FALSE(read("a.exr").empty());
+  EXPECT_EQ(read("a.exr"), read("b.exr"));
 }
 
 TEST_F(ImageFileTest, exr_refuses_reserved_attribute_names) {
@@ -198,19 +186,15 @@ TEST_F(ImageFileTest, reading_refuses_what_is_no_rgb_exr) {
     file.setFrameBuffer(buffer);
     file.writePixels(1);
   }
-  try {
-    testbench::read_exr_rgb(directory_ / "grey.exr");
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("no channel R"), std::string::npos) << error.what();
-  }
+  test_support::expect_input_error([&] { testbench::read_exr_rgb(directory_ / "grey.exr"); },
+                                   {"no channel R"});
 }
 
 TEST_F(ImageFileTest, atomic_write_replaces_the_old_content) {
   const fs::path path = directory_ / "a.txt";
   testbench::write_bytes_atomically(path, "old");
   testbench::write_bytes_atomically(path, std::string_view("new\0content", 11));
-  EXPECT_EQ(content(path), std::string("new\0content", 11));
+  EXPECT_EQ(test_support::read_file(path), std::string("new\0content", 11));
   EXPECT_EQ(files(), std::vector<std::string>{"a.txt"});
 }
 
@@ -228,7 +212,7 @@ TEST_F(ImageFileTest, failing_writer_leaves_the_old_content_and_no_temporary_fil
     EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("the writer broke"), std::string::npos) << error.what();
   }
-  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(test_support::read_file(path), "old");
   EXPECT_EQ(files(), std::vector<std::string>{"a.txt"});
 }
 
@@ -267,15 +251,9 @@ TEST_F(ImageFileTest, refuses_targets_that_cannot_be_written) {
     SCOPED_TRACE(path);
     EXPECT_THROW(testbench::require_writable(path), InputError);
     EXPECT_THROW(testbench::write_bytes_atomically(path, "x"), InputError);
-    try {
-      write_exr(path, small_film(), {});
-      FAIL() << "no error";
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      EXPECT_EQ(message.find(path.string()), 0U) << message;
-      EXPECT_NE(message.find("allowed: "), std::string::npos) << message;
-      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    }
+    const auto write = [&] { write_exr(path, small_film(), {}); };
+    test_support::expect_input_error(write, {"allowed: "});
+    EXPECT_EQ(test_support::input_error_of(write).find(path.string()), 0u);
   }
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
@@ -285,7 +263,7 @@ TEST_F(ImageFileTest, require_writable_leaves_nothing_behind) {
   EXPECT_TRUE(files().empty());
   testbench::write_bytes_atomically(directory_ / "a.exr", "old");
   EXPECT_NO_THROW(testbench::require_writable(directory_ / "a.exr"));
-  EXPECT_EQ(content(directory_ / "a.exr"), "old");
+  EXPECT_EQ(read("a.exr"), "old");
   const fs::path here = fs::current_path();
   fs::current_path(directory_);
   EXPECT_NO_THROW(testbench::require_writable("relative.exr"));

@@ -8,6 +8,7 @@
 
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/input_error.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -255,12 +256,8 @@ TEST(MonoImage, CdfOfManyLightsAscendsToOne) {
 TEST(MonoImage, SceneWithoutLightIsRefusedByName) {
   Scene scene = three_triangles();
   for (testbench::Material& material : scene.materials) material.emission = glm::dvec3(0.0);
-  try {
-    make_mono_image(scene, 96, {});
-    FAIL() << "no error";
-  } catch (const testbench::InputError& error) {
-    EXPECT_EQ(std::string(error.what()).rfind("three: ", 0), 0u) << error.what();
-  }
+  const std::string message = test_support::input_error_of([&] { make_mono_image(scene, 96, {}); });
+  EXPECT_EQ(message.rfind("three: ", 0), 0u) << message;
   scene.triangles.clear();
   EXPECT_THROW(make_mono_image(scene, 96, {}), testbench::InputError);
 }

@@ -1,40 +1,27 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "testbench/scene/obj_mesh.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
-using testbench::InputError;
 using testbench::load_obj_mesh;
 using testbench::Mesh;
 
 constexpr const char* kMaterials = "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0.25 0.5 1\nKe 4 5 6\n";
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-class ObjMeshTest : public testing::Test {
+class ObjMeshTest : public test_support::DirectoryFixture {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = std::filesystem::path(testing::TempDir()) / (std::string("obj_mesh_") + test->name());
-    std::filesystem::create_directories(directory_);
-    write("m.mtl", kMaterials);
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    std::ofstream(directory_ / name, std::ios::binary) << text;
-    return directory_ / name;
-  }
+  ObjMeshTest() { write("m.mtl", kMaterials); }
 
   Mesh load(const std::string& obj) { return load_obj_mesh(write("mesh.obj", "mtllib m.mtl\n" + obj)); }
 
-  /// The error's message. Checks that it is one line and contains every part.
   void expect_error(const std::string& obj, const std::vector<std::string>& parts) {
     expect_error_of([&] { load(obj); }, parts);
   }
@@ -43,19 +30,10 @@ class ObjMeshTest : public testing::Test {
     expect_error(std::string(kSquare) + "usemtl grey\nf 1 2 3\n", parts);
   }
   template <class Call>
-  void expect_error_of(Call call, const std::vector<std::string>& parts) {
-    try {
-      call();
-      FAIL() << "no error";
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-      for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message;
-      EXPECT_NE(message.find("allowed: "), std::string::npos) << message;
-    }
+  void expect_error_of(Call call, std::vector<std::string> parts) {
+    parts.emplace_back("allowed: ");
+    test_support::expect_input_error(call, parts);
   }
-
-  std::filesystem::path directory_;
 };
 
 TEST_F(ObjMeshTest, reads_numbers_to_the_last_bit) {

@@ -14,26 +14,16 @@
 
 #include "model/waves/vcd_writer.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/temporary_directory.hpp"
 #include "tests/support/vcd_reader.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-class OutputStream : public testing::Test {
+class OutputStream : public test_support::DirectoryFixture {
  protected:
-  OutputStream() {
-    directory = fs::path(testing::TempDir()) / ("output_stream_" + std::to_string(getpid()));
-    fs::create_directory(directory);
-  }
-  ~OutputStream() override { fs::remove_all(directory); }
-
-  bool directory_is_empty() const { return fs::is_empty(directory); }
-  std::string text_of(const fs::path& file) const {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-  }
+  bool directory_is_empty() const { return fs::is_empty(directory_); }
   static std::string failure_of(const std::function<void()>& action) {
     try {
       action();
@@ -42,8 +32,6 @@ class OutputStream : public testing::Test {
     }
     return "";
   }
-
-  fs::path directory;
 };
 
 /// Puts a program of this name first in PATH.
@@ -88,7 +76,7 @@ std::string some_vcd(int changes) {
 }
 
 TEST_F(OutputStream, FileHasItsNameOnlyWhenItIsWhole) {
-  const fs::path file = directory / "a.txt";
+  const fs::path file = directory_ / "a.txt";
   {
     testbench::StreamedFile stream(file);
     stream.write("one ");
@@ -96,10 +84,10 @@ TEST_F(OutputStream, FileHasItsNameOnlyWhenItIsWhole) {
     stream.write("two");
     stream.finish();
   }
-  EXPECT_EQ(text_of(file), "one two");
-  { testbench::StreamedFile(directory / "b.txt").write("left"); }
-  EXPECT_FALSE(fs::exists(directory / "b.txt"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(directory), {}), 1);
+  EXPECT_EQ(test_support::read_file(file), "one two");
+  { testbench::StreamedFile(directory_ / "b.txt").write("left"); }
+  EXPECT_FALSE(fs::exists(directory_ / "b.txt"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1);
 }
 
 TEST_F(OutputStream, FullDiskIsToldAtTheEndAndLeavesNothing) {
@@ -110,7 +98,7 @@ TEST_F(OutputStream, FullDiskIsToldAtTheEndAndLeavesNothing) {
   setrlimit(RLIMIT_FSIZE, &small);
   std::string failure;
   {
-    testbench::StreamedFile stream(directory / "a.txt");
+    testbench::StreamedFile stream(directory_ / "a.txt");
     for (int i = 0; i < 10; ++i) stream.write(std::string(30'000, 'x'));
     failure = failure_of([&] { stream.finish(); });
   }
@@ -123,12 +111,12 @@ TEST_F(OutputStream, FullDiskIsToldAtTheEndAndLeavesNothing) {
 TEST_F(OutputStream, FstHoldsWhatTheVcdDoes) {
   if (!has_program("vcd2fst") || !has_program("fst2vcd")) GTEST_SKIP() << "needs Debian's gtkwave";
   const std::string vcd = some_vcd(50'000);
-  const fs::path file = directory / "a.fst";
+  const fs::path file = directory_ / "a.fst";
   const auto stream = testbench::make_wave_stream(file);
   for (std::size_t i = 0; i < vcd.size(); i += 10'000) stream->write(std::string_view(vcd).substr(i, 10'000));
   stream->finish();
-  EXPECT_EQ(std::distance(fs::directory_iterator(directory), {}), 1) << "no VCD";
-  const fs::path back = directory / "back.vcd";
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "no VCD";
+  const fs::path back = directory_ / "back.vcd";
   ASSERT_EQ(std::system(("fst2vcd -f " + file.string() + " -o " + back.string()).c_str()), 0);
   std::istringstream text(vcd);
   const test_support::VcdReader expected(text);
@@ -143,22 +131,22 @@ TEST_F(OutputStream, FstHoldsWhatTheVcdDoes) {
 }
 
 TEST_F(OutputStream, ConverterThatEndsEarlyIsTold) {
-  const FakeProgram fake(directory, "vcd2fst", "head -c 1000 > \"$2\"; exit 3");
+  const FakeProgram fake(directory_, "vcd2fst", "head -c 1000 > \"$2\"; exit 3");
   std::string failure;
   {
-    testbench::FstFile stream(directory / "a.fst");
+    testbench::FstFile stream(directory_ / "a.fst");
     for (int i = 0; i < 100; ++i) stream.write(std::string(30'000, 'x'));
     failure = failure_of([&] { stream.finish(); });
   }
   EXPECT_NE(failure.find("a.fst: cannot be written: vcd2fst ended early with exit code 3"), std::string::npos)
       << failure;
-  EXPECT_FALSE(fs::exists(directory / "a.fst"));
+  EXPECT_FALSE(fs::exists(directory_ / "a.fst"));
 }
 
 TEST_F(OutputStream, ConverterThatIsKilledIsTold) {
   {
-    const FakeProgram fake(directory, "vcd2fst", "touch \"$2.hier\"; kill -9 $$");
-    testbench::FstFile stream(directory / "a.fst");
+    const FakeProgram fake(directory_, "vcd2fst", "touch \"$2.hier\"; kill -9 $$");
+    testbench::FstFile stream(directory_ / "a.fst");
     EXPECT_NE(failure_of([&] { stream.finish(); }).find("ended by signal 9"), std::string::npos);
   }
   EXPECT_TRUE(directory_is_empty());
@@ -166,23 +154,23 @@ TEST_F(OutputStream, ConverterThatIsKilledIsTold) {
 
 TEST_F(OutputStream, FstThatIsCutShortIsTold) {
   if (!has_program("vcd2fst")) GTEST_SKIP() << "needs Debian's gtkwave";
-  const fs::path real = directory / "real.fst";
+  const fs::path real = directory_ / "real.fst";
   {
     testbench::FstFile stream(real);
     stream.write(some_vcd(20'000));
     stream.finish();
   }
   const FakeProgram fake(
-      directory, "vcd2fst",
+      directory_, "vcd2fst",
       "cat > /dev/null; head -c $(($(wc -c < " + real.string() + ") - 20)) " + real.string() + " > \"$2\"");
   std::string failure;
   {
-    testbench::FstFile stream(directory / "a.fst");
+    testbench::FstFile stream(directory_ / "a.fst");
     stream.write("anything");
     failure = failure_of([&] { stream.finish(); });
   }
   EXPECT_NE(failure.find("cut short"), std::string::npos) << failure;
-  EXPECT_FALSE(fs::exists(directory / "a.fst"));
+  EXPECT_FALSE(fs::exists(directory_ / "a.fst"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "testbench/system/error.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
@@ -16,18 +17,10 @@ using testbench::InputError;
 using testbench::PointStore;
 using testbench::RunError;
 
-class PointStoreTest : public testing::Test {
+class PointStoreTest : public test_support::DirectoryFixture {
  protected:
-  PointStoreTest() {
-    std::string pattern = testing::TempDir() + "point_store_test_XXXXXX";
-    directory_ = mkdtemp(pattern.data());
-  }
-  ~PointStoreTest() override { std::filesystem::remove_all(directory_); }
-
   static PointStore::Json done(int cycles) { return {{"status", "done"}, {"cycles", cycles}}; }
   void append(const std::string& text) { std::ofstream(directory_ / "points.jsonl", std::ios::app) << text; }
-
-  std::filesystem::path directory_;
 };
 
 TEST_F(PointStoreTest, KeepsWhatItWasGiven) {

@@ -1,17 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <string>
 #include <vector>
 
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace {
 
-using testbench::InputError;
 using testbench::load_scene;
 using testbench::Scene;
 
@@ -19,20 +19,11 @@ constexpr const char* kCamera =
     "[camera]\nposition = [0, 0, -5]\ndirection = [0, 0, 2]\nvertical_fov_degrees = 40\n";
 constexpr const char* kMesh = "[[mesh]]\nfile = \"a.obj\"\n";
 
-class SceneFileTest : public testing::Test {
+class SceneFileTest : public test_support::DirectoryFixture {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = std::filesystem::path(testing::TempDir()) / (std::string("scene_file_") + test->name());
-    std::filesystem::create_directories(directory_);
+  SceneFileTest() {
     write("a.mtl", "newmtl lamp\nKd 0.5 0.5 0.5\nKe 1 1 1\n");
     write("a.obj", "mtllib a.mtl\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl lamp\nf 1 2 3\n");
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    std::ofstream(directory_ / name, std::ios::binary) << text;
-    return directory_ / name;
   }
 
   Scene load(const std::string& toml) { return load_scene(write("scene.toml", toml)); }
@@ -41,19 +32,10 @@ class SceneFileTest : public testing::Test {
     write("scene.toml", toml);
     expect_error_of(directory_, parts);
   }
-  static void expect_error_of(const std::filesystem::path& path, const std::vector<std::string>& parts) {
-    try {
-      load_scene(path);
-      FAIL() << "no error";
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-      for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message;
-      EXPECT_NE(message.find("allowed: "), std::string::npos) << message;
-    }
+  static void expect_error_of(const std::filesystem::path& path, std::vector<std::string> parts) {
+    parts.emplace_back("allowed: ");
+    test_support::expect_input_error([&] { load_scene(path); }, parts);
   }
-
-  std::filesystem::path directory_;
 };
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b) {

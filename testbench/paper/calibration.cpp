@@ -64,7 +64,7 @@ class Fit {
 
   /// The Jacobian by differences, one column per unknown. The column of a constant that is not fitted is that
   /// of the unit matrix, which leaves it unchanged.
-  glm::dmat3 slopes(const glm::dvec3& x, const glm::dvec3& residual_at_x) const {
+  glm::dmat3 jacobian(const glm::dvec3& x, const glm::dvec3& residual_at_x) const {
     glm::dmat3 matrix(1.0);
     for (glm::length_t i = 0; i < unknowns(); ++i) {
       glm::dvec3 moved = x;
@@ -94,8 +94,8 @@ double largest(const glm::dvec3& errors) {
 }
 
 /// Newton's step, limited to half of each constant and at least to two steps.
-glm::dvec3 newton_step(const glm::dmat3& slopes, const glm::dvec3& errors, const glm::dvec3& x) {
-  const glm::dvec3 step = -(glm::inverse(slopes) * errors);
+glm::dvec3 newton_step(const glm::dmat3& jacobian, const glm::dvec3& errors, const glm::dvec3& x) {
+  const glm::dvec3 step = -(glm::inverse(jacobian) * errors);
   const glm::dvec3 limit = glm::max(0.5 * glm::abs(x), glm::dvec3(2.0));
   return glm::clamp(step, -limit, limit);
 }
@@ -125,7 +125,7 @@ Calibration calibrate(const Assumptions& assumptions, const CalibrationOptions& 
   while (true) {
     if (progress) progress(describe(constants_at(x), errors));
     if (largest(errors) < kConverged || result.iterations == kMaxIterations) break;
-    x = point_of(constants_at(x + newton_step(fit.slopes(x, errors), errors, x)));
+    x = point_of(constants_at(x + newton_step(fit.jacobian(x, errors), errors, x)));
     errors = fit.residual(x);
     ++result.iterations;
   }

@@ -149,7 +149,7 @@ class TableReader {
 
   const toml::node& require(const char* key) const {
     const toml::node* node = table_.get(key);
-    if (node == nullptr) fail(where(table_), full_key(key), "nothing", "this key is required");
+    if (node == nullptr) fail(where(table_), full_key(key), "none", "this key is required");
     return *node;
   }
 
@@ -293,7 +293,7 @@ void add_mesh(const TableReader& table, const std::filesystem::path& directory, 
 TableReader subtable(const toml::table& root, const std::string& file, const char* name) {
   const toml::node* node = root.get(name);
   const std::string allowed = std::string("one [") + name + "] table";
-  if (node == nullptr) fail(file, name, "nothing", allowed);
+  if (node == nullptr) fail(file, name, "none", allowed);
   if (!node->is_table()) fail(file, name, "no table", allowed);
   return TableReader(file, name, *node->as_table());
 }
@@ -308,7 +308,7 @@ FilmSize read_film(const toml::table& root, const std::string& file) {
 std::optional<Camera> add_meshes(const toml::table& root, const std::filesystem::path& file, Scene& scene) {
   const toml::array* meshes = root.get_as<toml::array>("mesh");
   if (meshes == nullptr || meshes->empty() || !meshes->is_array_of_tables()) {
-    fail(file.string(), "mesh", root.contains("mesh") ? "no array of tables" : "nothing",
+    fail(file.string(), "mesh", root.contains("mesh") ? "no array of tables" : "none",
          "one [[mesh]] table or more");
   }
   std::optional<Camera> camera;
@@ -362,7 +362,7 @@ Scene load_scene(const std::filesystem::path& path) {
   if (root.contains("camera")) camera = read_camera(subtable(root, file.string(), "camera"));
   const std::optional<Camera> of_mesh = add_meshes(root, file, scene);
   if (!camera) camera = of_mesh;
-  if (!camera) fail(file.string(), "camera", "nothing", "one [camera] table, or a mesh file that holds one");
+  if (!camera) fail(file.string(), "camera", "none", "one [camera] table, or a mesh file that holds one");
   scene.camera = *camera;
   require_renderable(scene, file.string());
   return scene;

@@ -4,7 +4,7 @@
 
 namespace testbench {
 
-/// Times this process.
+/// Times the simulator, that is, this process, not the chip.
 class SimulatorTimer {
  public:
   SimulatorTimer();
@@ -16,7 +16,7 @@ class SimulatorTimer {
   double wall_start_;
 };
 
-/// The most memory this process has had in use.
+/// The largest amount of memory that this process has used so far.
 std::uint64_t peak_bytes();
 
 }  // namespace testbench

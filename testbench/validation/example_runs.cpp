@@ -16,7 +16,7 @@ using examples::Dgemm;
 constexpr double kPi = 3.14159265358979323846;
 
 /// A pseudo-random number in [-1, 1) that depends only on its index: splitmix64 (Steele, Lea, Flood, 2014).
-double number(std::uint64_t index) {
+double pseudo_random(std::uint64_t index) {
   std::uint64_t bits = (index + 1) * 0x9e3779b97f4a7c15u;
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
@@ -92,10 +92,10 @@ class DgemmBlocks {
 };
 
 double element_of_a(std::uint64_t i, std::uint64_t l) {
-  return number(2 * (i * 100003 + l));
+  return pseudo_random(2 * (i * 100003 + l));
 }
 double element_of_b(std::uint64_t l, std::uint64_t j) {
-  return number(2 * (l * 100003 + j) + 1);
+  return pseudo_random(2 * (l * 100003 + j) + 1);
 }
 
 void check_product(const DgemmBlocks& blocks, cn::MonoPointer<double> c, const std::uint8_t* mono) {
@@ -159,7 +159,7 @@ Payoff expected_payoff(const examples::MonteCarlo::Option& option) {
 
 examples::Complex pixel(std::uint64_t image, std::uint64_t y, std::uint64_t x) {
   const std::uint64_t index = 2 * ((image * examples::kFftSize + y) * examples::kFftSize + x);
-  return {float(number(index)), float(number(index + 1))};
+  return {float(pseudo_random(index)), float(pseudo_random(index + 1))};
 }
 
 class FftCheck {

@@ -17,10 +17,10 @@ class BrokenMachine : public testbench::NativeMachine {
       : NativeMachine(num_pes, poly_bytes, mono_bytes), dropped_wait_(dropped_wait) {}
 
   /// Semaphores up to this one are not signalled by transfers.
-  void spare_semaphores_to(cn::Semaphore last) { spared_ = last.index; }
+  void set_last_host_semaphore(cn::Semaphore last) { last_host_semaphore_ = last.index; }
 
   void sem_wait(cn::Semaphore semaphore) override {
-    const bool for_transfer = semaphore.index > spared_;
+    const bool for_transfer = semaphore.index > last_host_semaphore_;
     if (for_transfer && note_wait(waits_[std::size_t(semaphore.index)]) && next_wait_++ == dropped_wait_)
       return;
     NativeMachine::sem_wait(semaphore);
@@ -59,7 +59,7 @@ class BrokenMachine : public testbench::NativeMachine {
   }
 
   int dropped_wait_;
-  int spared_ = -1;
+  int last_host_semaphore_ = -1;
   int next_wait_ = 0;
   std::array<Waits, kSemaphores> waits_;
   std::vector<int> needed_waits_;

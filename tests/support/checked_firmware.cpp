@@ -19,7 +19,7 @@ CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::Program
   mutation.layout(image.layout);
   constexpr int kPolyBytes = 32768;  // eight buffers of one stage need more than the CSX600's 6 KiB
   BrokenMachine machine(num_pes, kPolyBytes, image.layout.total_bytes, mutation.dropped_wait);
-  machine.spare_semaphores_to(HostSemaphores::kResultsFree);
+  machine.set_last_host_semaphore(HostSemaphores::kResultsFree);
   std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
 
   model::HazardChecker checker(machine);

@@ -57,7 +57,7 @@ std::vector<Triangle> slanted() {
 
 /// The mesh, cut to a size that takes little time if rays test every triangle, as with needles and
 /// duplicates.
-std::vector<Triangle> some(Mesh mesh, std::size_t most) {
+std::vector<Triangle> cut_to_size(Mesh mesh, std::size_t most) {
   std::vector<Triangle> triangles = test_support::mesh(mesh);
   if (triangles.size() > most) triangles.resize(most);
   return triangles;
@@ -91,12 +91,12 @@ std::vector<NamedMesh> search_meshes() {
   using testbench::GeneratedScene;
   return {{"one", [] { return mesh(Mesh::one); }},
           {"coplanar", [] { return mesh(Mesh::coplanar); }},
-          {"soup", [] { return some(Mesh::soup, 1000); }},
-          {"needles", [] { return some(Mesh::needles, 100); }},
-          {"duplicates", [] { return some(Mesh::duplicates, 50); }},
+          {"soup", [] { return cut_to_size(Mesh::soup, 1000); }},
+          {"needles", [] { return cut_to_size(Mesh::needles, 100); }},
+          {"duplicates", [] { return cut_to_size(Mesh::duplicates, 50); }},
           {"scales", [] { return mesh(Mesh::scales); }},
-          {"huge", [] { return scaled(some(Mesh::huge, 100), 1e-200); }},
-          {"tiny", [] { return scaled(some(Mesh::tiny, 100), 1e230); }},
+          {"huge", [] { return scaled(cut_to_size(Mesh::huge, 100), 1e-200); }},
+          {"tiny", [] { return scaled(cut_to_size(Mesh::tiny, 100), 1e230); }},
           {"large_triangles", [] { return soup(60, 1.0, 1.0, 11); }},
           {"flats", flats},
           {"nested", nested},

@@ -113,7 +113,7 @@ TEST_F(SceneFileTest, refuses_unknown_keys) {
 TEST_F(SceneFileTest, refuses_missing_parts) {
   expect_error(kMesh, {"scene.toml", "camera"});
   expect_error("camera = 3\n" + std::string(kMesh), {"camera"});
-  expect_error(kCamera, {"scene.toml", "mesh", "nothing"});
+  expect_error(kCamera, {"scene.toml", "mesh", "found none"});
   expect_error(std::string("mesh = 3\n") + kCamera, {"mesh"});
   expect_error(std::string("mesh = []\n") + kCamera, {"mesh"});
   expect_error(std::string(kCamera) + "[mesh]\nfile = \"a.obj\"\n", {"mesh", "[[mesh]]"});

@@ -1,6 +1,6 @@
 # Sourced by demo.sh, test.sh and .ci/style, from the project's root.
 
-# Debian 12 packages; each is said where it is used in the CMake files.
+# Debian 12 packages. The CMake files that use them say what for; python3 runs .ci/layers.
 packages=(
   g++ cmake ninja-build pkg-config binutils
   libsystemc-dev libglm-dev libopenexr-dev libpng-dev libssl-dev
@@ -39,7 +39,7 @@ prepare_build() {
   cmake --build --preset "$1" --target "$2"
 }
 
-# print_time WHAT: since the script began.
+# print_time WHAT: prints the time since the script began.
 print_time() {
   printf '%s: %d min %02d s since the start\n' "$1" $((SECONDS / 60)) $((SECONDS % 60))
 }

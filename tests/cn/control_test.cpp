@@ -4,7 +4,7 @@
 
 #include "tests/support/lock_step.hpp"
 
-namespace {
+namespace control_test {
 
 using cn::InstructionClass;
 using cn::IssueCounts;
@@ -255,4 +255,4 @@ TEST_F(CnControl, RandomProgramsEqualAChipInLockStep) {
   EXPECT_GT(loops_entered, 100);
 }
 
-}  // namespace
+}  // namespace control_test

@@ -6,7 +6,7 @@
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace conversion_test {
 
 using cn::InstructionClass;
 using cn::mask;
@@ -175,4 +175,4 @@ TEST_F(CnConversion, MasksCombine) {
     EXPECT_EQ(counted, counts({{InstructionClass::int16_alu, 1}}));
 }
 
-}  // namespace
+}  // namespace conversion_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace exact_test {
 
 using cn::poly;
 using test_support::load;
@@ -119,4 +119,4 @@ TEST_F(CnExact, HalvesOfAWordAreItsBits) {
   }
 }
 
-}  // namespace
+}  // namespace exact_test

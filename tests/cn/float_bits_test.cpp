@@ -9,7 +9,7 @@
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace float_bits_test {
 
 using cn::InstructionClass;
 using cn::poly;
@@ -174,4 +174,4 @@ TEST_F(CnFloatBits, WordsOfFiniteDoublesArePutInOrder) {
   EXPECT_EQ(issued, counts({{InstructionClass::int64_alu, 1}, {InstructionClass::move, 2}}));
 }
 
-}  // namespace
+}  // namespace float_bits_test

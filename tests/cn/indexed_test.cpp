@@ -9,7 +9,7 @@
 #include "tests/support/poly_words.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace indexed_test {
 
 using cn::InstructionClass;
 using cn::LaneMask;
@@ -163,4 +163,4 @@ TEST_F(CnIndexed, TheHighestBitIsThatOfTheWholePart) {
   }
 }
 
-}  // namespace
+}  // namespace indexed_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace lane_mask_test {
 
 using cn::kMaxPes;
 using cn::LaneMask;
@@ -42,4 +42,4 @@ TEST(LaneMask, PartsMakeTheWhole) {
   EXPECT_FALSE(live.without(live.with(shadow)).any());
 }
 
-}  // namespace
+}  // namespace lane_mask_test

@@ -6,7 +6,7 @@
 
 #include "firmware/cn/language/kernel.hpp"
 
-namespace {
+namespace least_test {
 
 struct LeastOf {
   cn::PolyField<std::int32_t> value;
@@ -39,4 +39,4 @@ TEST(KeepLeast, FindsTheLeastOfTheEnabledPes) {
   }
 }
 
-}  // namespace
+}  // namespace least_test

@@ -8,7 +8,7 @@
 #include "tests/support/poly_words.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace machine_test {
 
 using cn::Direction;
 using cn::InstructionClass;
@@ -341,4 +341,4 @@ TEST(NumberAscending, EqualsAWalkAlongThePath) {
   }
 }
 
-}  // namespace
+}  // namespace machine_test

@@ -8,7 +8,7 @@
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace math_test {
 
 using cn::InstructionClass;
 using cn::poly;
@@ -357,4 +357,4 @@ TEST_F(CnVec3, SelectsWholeVectors) {
       [&](std::size_t i) { return at(i < 100 ? a : b, i); });
 }
 
-}  // namespace
+}  // namespace math_test

@@ -8,7 +8,7 @@
 #include "tests/support/poly_words.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace memory_test {
 
 using cn::InstructionClass;
 using cn::LaneMask;
@@ -272,4 +272,4 @@ TEST_F(PolyPointerTest, GetsAndSetsByMember) {
   }
 }
 
-}  // namespace
+}  // namespace memory_test

@@ -7,7 +7,7 @@
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace poly4_test {
 
 using cn::Indices4;
 using cn::InstructionClass;
@@ -261,4 +261,4 @@ TEST_F(CnPolyArray, StreamCostsAStepForEachVectorAndAnEnabledLoadForEachFeeding)
             counts({{InstructionClass::enable, 2}, {InstructionClass::sram_vector_load, 8}}));
 }
 
-}  // namespace
+}  // namespace poly4_test

@@ -6,7 +6,7 @@
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace poly_test {
 
 using cn::InstructionClass;
 using cn::mask;
@@ -254,4 +254,4 @@ TEST(CnPolyClasses, BelongToTheType) {
       cn::kInstructionClasses);
 }
 
-}  // namespace
+}  // namespace poly_test

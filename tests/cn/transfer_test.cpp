@@ -7,7 +7,7 @@
 #include "firmware/cn/chip/transfer.hpp"
 #include "tests/support/poly_words.hpp"
 
-namespace {
+namespace transfer_test {
 
 using cn::Direction;
 using cn::MonoAddress;
@@ -93,4 +93,4 @@ TEST_F(CnTransfer, OfPesThatSaveToTheSameWordTheHighestIsKept) {
     }
 }
 
-}  // namespace
+}  // namespace transfer_test

@@ -9,7 +9,7 @@
 
 #include "tests/docs/references.hpp"
 
-namespace {
+namespace references_test {
 
 using test_support::BrokenReference;
 using test_support::FollowedReferences;
@@ -124,4 +124,4 @@ TEST(ReferenceChecker, ReadsWhatAPageOffers) {
   EXPECT_EQ(page.anchors.count("section-8-on_figures-too"), 1U);
 }
 
-}  // namespace
+}  // namespace references_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/native_example.hpp"
 
-namespace {
+namespace dgemm_test {
 
 using examples::Dgemm;
 using test_support::run_natively;
@@ -77,4 +77,4 @@ TEST(DgemmExample, ShapeMustFitPathFeedersAndSram) {
   EXPECT_NE(fault({100, 8, 1}).find("poly SRAM overflow: buffer 'C'"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace dgemm_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/native_example.hpp"
 
-namespace {
+namespace fft_test {
 
 using examples::Complex;
 using examples::Fft;
@@ -102,4 +102,4 @@ TEST(FftExample, RefusesWhatItCannotDo) {
   EXPECT_THROW(run_natively(two, 48), cn::MachineFault);
 }
 
-}  // namespace
+}  // namespace fft_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/native_example.hpp"
 
-namespace {
+namespace monte_carlo_test {
 
 using examples::MonteCarlo;
 using test_support::run_natively;
@@ -84,4 +84,4 @@ TEST(MonteCarloExample, CheckNoticesABiasOfTwoPercent) {
   EXPECT_NE(verdict(run, mono).find("Monte Carlo: mean payoff"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace monte_carlo_test

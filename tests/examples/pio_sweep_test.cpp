@@ -6,7 +6,7 @@
 
 #include "testbench/machine/native_machine.hpp"
 
-namespace {
+namespace pio_sweep_test {
 
 using examples::PioSweep;
 
@@ -47,4 +47,4 @@ TEST(PioSweepExample, PieceMustFitItsBuffer) {
   EXPECT_THROW(sweep.load({8, 6136, 0, 6144}, 1), cn::MachineFault);
 }
 
-}  // namespace
+}  // namespace pio_sweep_test

@@ -8,7 +8,7 @@
 #include "testbench/machine/native_machine.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace stream_test {
 
 using examples::Stream;
 
@@ -91,4 +91,4 @@ TEST_F(StreamExample, ThreadsHideTheKernelsBehindTheCopies) {
   EXPECT_LE(hidden, alone[model::CycleCause::poly]);
 }
 
-}  // namespace
+}  // namespace stream_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace taus88_test {
 
 using cn::InstructionClass;
 using examples::Taus88;
@@ -89,4 +89,4 @@ TEST_F(Taus88Test, EveryPeHasItsOwnStream) {
   EXPECT_EQ(first_numbers.size(), std::size_t(4 * num_pes()));
 }
 
-}  // namespace
+}  // namespace taus88_test

@@ -8,7 +8,7 @@
 #include "testbench/machine/native_machine.hpp"
 #include "tests/support/hazards.hpp"
 
-namespace {
+namespace hazard_checker_test {
 
 using cn::Access;
 using cn::LaneMask;
@@ -440,4 +440,4 @@ TEST_F(HazardChecker, TheKernelBeforeIsNamedWhenATransferIsToBlame) {
   expect_parts(hazard([&] { load(a, 0, t); }), {"hazard at cycle 1000, after kernel 'reader': request 1"});
 }
 
-}  // namespace
+}  // namespace hazard_checker_test

@@ -11,7 +11,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace {
+namespace hazard_chip_test {
 
 using cn::LaneMask;
 using cn::Machine;
@@ -220,4 +220,4 @@ TEST(CheckedRender, RunsCleanOnEveryChip) {
   }
 }
 
-}  // namespace
+}  // namespace hazard_chip_test

@@ -10,7 +10,7 @@
 #include "tests/support/broken_machine.hpp"
 #include "tests/support/hazards.hpp"
 
-namespace {
+namespace hazard_examples_test {
 
 using test_support::BrokenMachine;
 using test_support::expect_one_line;
@@ -91,4 +91,4 @@ TEST(HazardsOfExamples, PioSweep) {
       96);
 }
 
-}  // namespace
+}  // namespace hazard_examples_test

@@ -8,7 +8,7 @@
 #include "tests/support/checked_firmware.hpp"
 #include "tests/support/hazards.hpp"
 
-namespace {
+namespace hazard_mutant_test {
 
 using path_tracer::Program;
 using path_tracer::ProgramConfig;
@@ -69,4 +69,4 @@ TEST(Mutant, IsStopped) {
   std::printf(", such as: %s\n", as_expected.empty() ? "none" : as_expected.begin()->c_str());
 }
 
-}  // namespace
+}  // namespace hazard_mutant_test

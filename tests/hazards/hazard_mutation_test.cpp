@@ -6,7 +6,7 @@
 #include "tests/support/hazards.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace {
+namespace hazard_mutation_test {
 
 using path_tracer::Program;
 using path_tracer::ProgramConfig;
@@ -162,4 +162,4 @@ TEST(BrokenFirmware, KernelsThatReportNothingAreRefused) {
                {"kernel 'replace' is not built to report"});
 }
 
-}  // namespace
+}  // namespace hazard_mutation_test

@@ -6,15 +6,15 @@
 #include "firmware/cn/machine.hpp"
 #include "tests/support/pio_bench.hpp"
 
-namespace {
+namespace at_pio_test {
 
 std::size_t allocations = 0;
 
-}  // namespace
+}  // namespace at_pio_test
 
 // Not inlined: the compiler would see malloc meet delete.
 [[gnu::noinline]] void* operator new(std::size_t bytes) {
-  ++allocations;
+  ++at_pio_test::allocations;
   if (void* const memory = std::malloc(bytes)) return memory;
   throw std::bad_alloc();
 }
@@ -25,7 +25,7 @@ std::size_t allocations = 0;
   std::free(memory);
 }
 
-namespace {
+namespace at_pio_test {
 
 using cn::LaneMask;
 using cn::MonoPlaces;
@@ -248,4 +248,4 @@ TEST_F(AtPio, AnErrorOfTheMemoryReachesTheFirmware) {
   });
 }
 
-}  // namespace
+}  // namespace at_pio_test

@@ -12,7 +12,7 @@
 #include "tests/support/chip_config_support.hpp"
 
 namespace model {
-namespace {
+namespace chip_config_test {
 
 std::string set_error(std::string_view key, std::string_view text) {
   return error_of([&] {
@@ -344,5 +344,5 @@ TEST(Validate, ChecksRangesOfFieldsThatWereSetDirectly) {
   EXPECT_EQ(error_of([&] { validate(config); }).rfind("ddr.size_bytes: found '", 0), 0U);
 }
 
-}  // namespace
+}  // namespace chip_config_test
 }  // namespace model

@@ -9,7 +9,7 @@
 #include "tests/support/chip_config_support.hpp"
 
 namespace model {
-namespace {
+namespace chip_file_test {
 
 TEST(EffectiveToml, RoundTripsEveryPreset) {
   for (const std::string& name : preset_names()) {
@@ -136,5 +136,5 @@ TEST(LoadChip, MissingFileAndDirectory) {
   std::filesystem::remove(directory);
 }
 
-}  // namespace
+}  // namespace chip_file_test
 }  // namespace model

@@ -6,7 +6,7 @@
 #include "tests/support/chip_config_support.hpp"
 
 namespace model {
-namespace {
+namespace chip_presets_test {
 
 TEST(Presets, AreTheFiveThatAreDocumented) {
   EXPECT_EQ(preset_names(),
@@ -61,5 +61,5 @@ TEST(Presets, UnknownNameListsThem) {
             "FILE:2: unknown preset 'csx800'; allowed: csx600, csx600_250mhz, csx700, g80_like, paper");
 }
 
-}  // namespace
+}  // namespace chip_presets_test
 }  // namespace model

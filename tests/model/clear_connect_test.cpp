@@ -7,7 +7,7 @@
 #include "tests/support/test_chip.hpp"
 #include "tests/support/tlm_testers.hpp"
 
-namespace {
+namespace clear_connect_test {
 
 using model::Initiator;
 using sc_core::SC_NS;
@@ -121,4 +121,4 @@ TEST_F(ClearConnect, PeAddressesAreBookedWithTheirPacketsAndBytes) {
   EXPECT_EQ(network.statistics(Initiator::pio).bytes, 240u);
 }
 
-}  // namespace
+}  // namespace clear_connect_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/test_chip.hpp"
 
-namespace {
+namespace clear_connect_timing_test {
 
 using model::ClearConnectTiming;
 using model::Initiator;
@@ -83,4 +83,4 @@ TEST(ClearConnectTiming, NarrowPortIsTheBottleneck) {
   EXPECT_EQ(network.backward(Initiator::control, 16, 1, 1150, 1166), 1424u);  // port 1402..1418
 }
 
-}  // namespace
+}  // namespace clear_connect_timing_test

@@ -4,7 +4,7 @@
 #include "model/control/control_unit.hpp"
 #include "tests/support/control_bench.hpp"
 
-namespace {
+namespace control_unit_at_test {
 
 using cn::InstructionClass;
 using cn::LaneMask;
@@ -121,4 +121,4 @@ TEST_F(ControlUnitAt, WaitThatNobodyWillEndIsADeadlock) {
   EXPECT_THROW(chip->control_unit.rethrow_failure(), cn::MachineFault);
 }
 
-}  // namespace
+}  // namespace control_unit_at_test

@@ -8,7 +8,7 @@
 #include "model/control/control_unit.hpp"
 #include "tests/support/control_bench.hpp"
 
-namespace {
+namespace control_unit_host_test {
 
 using cn::InstructionClass;
 using cn::LaneMask;
@@ -259,4 +259,4 @@ TEST_F(ControlUnitHost, PointerToMonoMemoryIsGivenUpWhenTheMemoryTakesItBack) {
   EXPECT_TRUE(control_unit.finished());
 }
 
-}  // namespace
+}  // namespace control_unit_host_test

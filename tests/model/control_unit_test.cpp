@@ -5,7 +5,7 @@
 
 #include "tests/support/control_bench.hpp"
 
-namespace {
+namespace control_unit_test {
 
 using cn::InstructionClass;
 using cn::LaneMask;
@@ -386,4 +386,4 @@ TEST(CycleCauses, HaveNamesOfTheirOwn) {
                                              "wait_host", "thread_switch"}));
 }
 
-}  // namespace
+}  // namespace control_unit_test

@@ -7,7 +7,7 @@
 #include "model/control/control_unit.hpp"
 #include "tests/support/control_bench.hpp"
 
-namespace {
+namespace control_unit_threads_test {
 
 using cn::InstructionClass;
 using cn::LaneMask;
@@ -399,4 +399,4 @@ TEST(ControlUnitThreadsObserved, SpansAreTheSameEachTimeAndHoweverOftenSystemCTi
   EXPECT_EQ(spans_of_busy_firmware(1000000), spans);
 }
 
-}  // namespace
+}  // namespace control_unit_threads_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace data_cache_test {
 
 using model::DataCache;
 
@@ -39,4 +39,4 @@ TEST(DataCache, OneLineIsACacheToo) {
   EXPECT_FALSE(cache.touch(0));
 }
 
-}  // namespace
+}  // namespace data_cache_test

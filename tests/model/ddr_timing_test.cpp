@@ -4,7 +4,7 @@
 
 #include "tests/support/test_chip.hpp"
 
-namespace {
+namespace ddr_timing_test {
 
 using model::DdrTiming;
 constexpr bool kRead = false;
@@ -168,4 +168,4 @@ TEST(DdrTiming, CountsBytesByDirection) {
   EXPECT_EQ(timing.statistics().refreshes, 0u);
 }
 
-}  // namespace
+}  // namespace ddr_timing_test

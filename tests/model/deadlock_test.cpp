@@ -5,7 +5,7 @@
 #include "tests/support/control_bench.hpp"
 #include "tests/support/hazards.hpp"
 
-namespace {
+namespace deadlock_test {
 
 using cn::LaneMask;
 using cn::Machine;
@@ -155,4 +155,4 @@ INSTANTIATE_TEST_SUITE_P(Timing, Deadlock,
                            return style.param == TimingStyle::loosely_timed ? "Loose" : "Approximate";
                          });
 
-}  // namespace
+}  // namespace deadlock_test

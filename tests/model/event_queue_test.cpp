@@ -4,7 +4,7 @@
 
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace event_queue_test {
 
 using model::Cycles;
 
@@ -81,4 +81,4 @@ TEST_F(EventQueue, WaitsForWholeCyclesOfTheClock) {
   EXPECT_EQ(event_queue.delay_until(7), sc_core::sc_time(7, sc_core::SC_NS));
 }
 
-}  // namespace
+}  // namespace event_queue_test

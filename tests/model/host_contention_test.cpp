@@ -5,7 +5,7 @@
 
 #include "tests/support/control_bench.hpp"
 
-namespace {
+namespace host_contention_test {
 
 using cn::Machine;
 using cn::Semaphore;
@@ -142,4 +142,4 @@ INSTANTIATE_TEST_SUITE_P(Styles, HostContention,
                            return style.param == TimingStyle::loosely_timed ? "Lt" : "At";
                          });
 
-}  // namespace
+}  // namespace host_contention_test

@@ -10,7 +10,7 @@
 #include "tests/support/test_chip.hpp"
 #include "tests/support/tlm_testers.hpp"
 
-namespace {
+namespace host_link_test {
 
 /// 1 byte a cycle and 1000 cycles a host DMA.
 class HostLink : public test_support::SystemCFixture {
@@ -106,4 +106,4 @@ TEST_F(HostLink, MoreThanMonoMemoryTakesIsAnError) {
   }
 }
 
-}  // namespace
+}  // namespace host_link_test

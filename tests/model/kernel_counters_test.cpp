@@ -2,7 +2,7 @@
 
 #include "tests/support/control_bench.hpp"
 
-namespace {
+namespace kernel_counters_test {
 
 using cn::InstructionClass;
 using cn::LaneMask;
@@ -87,4 +87,4 @@ TEST_F(KernelCounters, RunsAreCountedByThePesThatTheyBeganWith) {
   EXPECT_EQ(kernel("fake").runs_by_enabled_pes, (std::vector<std::uint64_t>{0, 1, 0, 2, 0, 0, 0, 0, 3}));
 }
 
-}  // namespace
+}  // namespace kernel_counters_test

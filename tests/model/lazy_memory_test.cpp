@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace {
+namespace lazy_memory_test {
 
 TEST(LazyMemory, TakesOnlyPagesThatAreTouched) {
   model::LazyMemory memory(std::uint64_t{1} << 34);  // 16 GiB, more than the simulator need have
@@ -30,4 +30,4 @@ TEST(LazyMemory, RefusedRangeNamesItsSize) {
   }
 }
 
-}  // namespace
+}  // namespace lazy_memory_test

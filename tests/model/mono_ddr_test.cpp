@@ -6,7 +6,7 @@
 #include "tests/support/test_chip.hpp"
 #include "tests/support/tlm_testers.hpp"
 
-namespace {
+namespace mono_ddr_test {
 
 using sc_core::SC_NS;
 using sc_core::sc_time;
@@ -219,4 +219,4 @@ TEST_F(MonoDdr, ExtensionIsClonedWithItsAddresses) {
   copy->free();
 }
 
-}  // namespace
+}  // namespace mono_ddr_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-namespace {
+namespace mono_footprint_test {
 
 using cn::LaneMask;
 using cn::MonoAddress;
@@ -81,4 +81,4 @@ TEST(MonoFootprint, NobodyTouchesNothing) {
   EXPECT_FALSE(nothing.overlap(nothing));
 }
 
-}  // namespace
+}  // namespace mono_footprint_test

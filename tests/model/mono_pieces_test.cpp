@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace mono_pieces_test {
 
 using cn::Direction;
 using cn::LaneMask;
@@ -132,4 +132,4 @@ TEST(MonoPieces, WritesAndPlainGathersAreNeverConsolidated) {
   EXPECT_EQ(describe(same, 64, LaneMask::first(4), kConsolidating, Direction::poly_to_mono).pieces(), 4);
 }
 
-}  // namespace
+}  // namespace mono_pieces_test

@@ -8,7 +8,7 @@
 #include "model/config/parameter_report.hpp"
 
 namespace model {
-namespace {
+namespace parameter_report_test {
 
 TEST(ParameterReport, JsonHoldsEveryParameterWithItsTypedValue) {
   ChipConfig config = preset("csx700");
@@ -80,5 +80,5 @@ TEST(ParameterReport, PresetsAreListedWithTheirReasons) {
   }
 }
 
-}  // namespace
+}  // namespace parameter_report_test
 }  // namespace model

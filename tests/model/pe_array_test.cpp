@@ -3,7 +3,7 @@
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/test_chip.hpp"
 
-namespace {
+namespace pe_array_test {
 
 using cn::InstructionClass;
 using cn::IssueTree;
@@ -198,4 +198,4 @@ TEST_F(PeArray, CountsByKernelInTheOrderOfTheirFirstRun) {
   EXPECT_DOUBLE_EQ(total.simd_efficiency(8), (2 * 590.0 + 24.0) / (2 * 800.0 + 48.0));
 }
 
-}  // namespace
+}  // namespace pe_array_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/pio_bench.hpp"
 
-namespace {
+namespace pio_effects_test {
 
 using cn::LaneMask;
 using cn::MonoPlaces;
@@ -165,4 +165,4 @@ INSTANTIATE_TEST_SUITE_P(Styles, PioEffects,
                            return style.param == TimingStyle::loosely_timed ? "Lt" : "At";
                          });
 
-}  // namespace
+}  // namespace pio_effects_test

@@ -3,7 +3,7 @@
 #include "firmware/cn/machine.hpp"
 #include "tests/support/pio_bench.hpp"
 
-namespace {
+namespace pio_engine_data_test {
 
 using cn::LaneMask;
 using cn::MonoPlaces;
@@ -192,4 +192,4 @@ TEST_P(PioEngineMixture, IsThatOfMoveData) {
 
 INSTANTIATE_TEST_SUITE_P(Memories, PioEngineMixture, testing::Bool());
 
-}  // namespace
+}  // namespace pio_engine_data_test

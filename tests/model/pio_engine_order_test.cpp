@@ -3,7 +3,7 @@
 #include "firmware/cn/machine.hpp"
 #include "tests/support/pio_bench.hpp"
 
-namespace {
+namespace pio_engine_order_test {
 
 using cn::LaneMask;
 using cn::MonoPlaces;
@@ -179,4 +179,4 @@ TEST_F(PioEngineOrder, ObserverSeesEveryRequestWithItsTimes) {
   EXPECT_EQ(event.queue_depth, 1);
 }
 
-}  // namespace
+}  // namespace pio_engine_order_test

@@ -3,7 +3,7 @@
 #include "firmware/cn/machine.hpp"
 #include "tests/support/pio_bench.hpp"
 
-namespace {
+namespace pio_engine_test {
 
 using cn::LaneMask;
 using cn::MonoPlaces;
@@ -184,4 +184,4 @@ TEST_F(PioEngine, SramPortsAreBooked) {
   EXPECT_EQ(sram->statistics().words_out, 12u);
 }
 
-}  // namespace
+}  // namespace pio_engine_test

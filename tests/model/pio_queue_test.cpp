@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace {
+namespace pio_queue_test {
 
 using cn::Direction;
 using model::Cycles;
@@ -130,4 +130,4 @@ TEST(PioQueue, NothingNextWhenEmpty) {
   EXPECT_FALSE(PioQueue(PioArbitration::strict_fifo, 1).next().has_value());
 }
 
-}  // namespace
+}  // namespace pio_queue_test

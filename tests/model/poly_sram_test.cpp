@@ -5,7 +5,7 @@
 #include "tests/support/test_chip.hpp"
 #include "tests/support/tlm_testers.hpp"
 
-namespace {
+namespace poly_sram_test {
 
 using cn::Direction;
 using sc_core::SC_NS;
@@ -81,4 +81,4 @@ TEST_F(PolySram, PlainReadsAndWritesAreCommandErrors) {
   EXPECT_EQ(pio.transaction.get_response_status(), tlm::TLM_COMMAND_ERROR_RESPONSE);
 }
 
-}  // namespace
+}  // namespace poly_sram_test

@@ -5,7 +5,7 @@
 #include "model/transaction/payload_pool.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace protocol_checker_test {
 
 using Payload = tlm::tlm_generic_payload;
 using tlm::BEGIN_REQ;
@@ -178,4 +178,4 @@ TEST_F(ProtocolChecker, PhaseInTheWrongDirection) {
   expect_violation("forward phases are BEGIN_REQ and END_RESP");
 }
 
-}  // namespace
+}  // namespace protocol_checker_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace semaphore_file_test {
 
 using model::SemaphoreFile;
 
@@ -44,4 +44,4 @@ TEST(SemaphoreFile, RefusesNumbersTheChipDoesNotHave) {
   EXPECT_THROW(semaphores.take(-1), std::out_of_range);
 }
 
-}  // namespace
+}  // namespace semaphore_file_test

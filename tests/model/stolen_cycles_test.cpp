@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace stolen_cycles_test {
 
 using model::stolen_cycles;
 
@@ -23,4 +23,4 @@ TEST(StolenCycles, EmptyKernelLosesNothing) {
   EXPECT_EQ(stolen_cycles(100, 1, 0, 0), 0u);
 }
 
-}  // namespace
+}  // namespace stolen_cycles_test

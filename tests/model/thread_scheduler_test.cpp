@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace thread_scheduler_test {
 
 using model::SemaphoreFile;
 using model::ThreadScheduler;
@@ -67,4 +67,4 @@ TEST_F(ThreadSchedulerOfEight, SaysWhoWaitsForWhat) {
             "thread 'first' waits on semaphore 'b', thread 'other' waits on semaphore 'a'");
 }
 
-}  // namespace
+}  // namespace thread_scheduler_test

@@ -5,7 +5,7 @@
 #include "model/network/clear_connect_timing.hpp"
 #include "tests/support/wave_probe_fixture.hpp"
 
-namespace {
+namespace wave_probe_test {
 
 using model::CycleCause;
 using model::Cycles;
@@ -330,4 +330,4 @@ TEST_F(WaveProbe, SinglePesShowTheirPart) {
   EXPECT_EQ(changes(vcd, "pe_array.pe_4.transfer"), (List{{0, 0}, {15'000, 2}, {25'000, 0}}));
 }
 
-}  // namespace
+}  // namespace wave_probe_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/wave_probe_fixture.hpp"
 
-namespace {
+namespace wave_probe_window_test {
 
 using model::CycleCause;
 using model::Cycles;
@@ -214,4 +214,4 @@ TEST_F(WaveProbeWindow, RunThatEndsWhereTheWindowBeginsIsReported) {
   expect_message([&] { probe->finish(); }, "which ended at cycle 80");
 }
 
-}  // namespace
+}  // namespace wave_probe_window_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/test_chip.hpp"
 
-namespace {
+namespace wave_view_test {
 
 using model::ViewOptions;
 using model::WaveSignal;
@@ -157,4 +157,4 @@ TEST(ValueFilter, OneLineAValue) {
   EXPECT_EQ(text.str(), "0 idle\n255 none\n");
 }
 
-}  // namespace
+}  // namespace wave_view_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace word_history_test {
 
 TEST(WordHistory, InterpolatesWithinARequest) {
   model::WordHistory history(4);
@@ -37,4 +37,4 @@ TEST(WordHistory, ForgottenRequestsCountAsMoved) {
   EXPECT_EQ(history.before(50), 30u);
 }
 
-}  // namespace
+}  // namespace word_history_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/vectors.hpp"
 
-namespace {
+namespace box_test {
 
 using cn::poly;
 using cn::vec3;
@@ -229,4 +229,4 @@ TEST_F(BoxTest, TheLatestEntryIsNotBeforeTheExactDistance) {
   }
 }
 
-}  // namespace
+}  // namespace box_test

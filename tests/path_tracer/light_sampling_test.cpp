@@ -6,7 +6,7 @@
 #include "firmware/path_tracer/program/program.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace light_sampling_test {
 
 using cn::poly;
 using cn::vec3;
@@ -301,4 +301,4 @@ TEST_F(LightSamplingTest, LinearDensitiesAreSampled) {
   }
 }
 
-}  // namespace
+}  // namespace light_sampling_test

@@ -9,7 +9,7 @@
 #include "testbench/machine/native_machine.hpp"
 #include "tests/support/node_layouts.hpp"
 
-namespace {
+namespace mono_node_test {
 
 using path_tracer::NodeLayout;
 using testbench::Box;
@@ -67,4 +67,4 @@ TEST_P(MonoNodes, AreWhatTheHostDecodes) {
 
 INSTANTIATE_TEST_SUITE_P(Layouts, MonoNodes, testing::ValuesIn(test_support::node_layouts()));
 
-}  // namespace
+}  // namespace mono_node_test

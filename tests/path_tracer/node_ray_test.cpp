@@ -7,7 +7,7 @@
 
 #include "tests/support/vectors.hpp"
 
-namespace {
+namespace node_ray_test {
 
 using cn::poly;
 using path_tracer::NodeFormat;
@@ -245,4 +245,4 @@ TEST(SingleNodeRayUnit, HasTheReachBetweenOneAndTwo) {
   EXPECT_EQ(to_node_unit(NodeFormat::fp32, 1e-320), 0x1p1000) << "and finite";
 }
 
-}  // namespace
+}  // namespace node_ray_test

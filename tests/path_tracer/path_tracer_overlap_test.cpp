@@ -13,7 +13,7 @@
 #include "testbench/mono_image/mono_image.hpp"
 #include "tests/support/late_machine.hpp"
 
-namespace {
+namespace path_tracer_overlap_test {
 
 using path_tracer::HostSemaphores;
 using path_tracer::Program;
@@ -271,4 +271,4 @@ TEST(OverlapPrograms, TimingRadianceDoesNotChangeIt) {
             without_overlap(small_program(Program::full, 0), 16));
 }
 
-}  // namespace
+}  // namespace path_tracer_overlap_test

@@ -12,7 +12,7 @@
 #include "firmware/path_tracer/path_tracer.hpp"
 #include "testbench/machine/native_machine.hpp"
 
-namespace {
+namespace path_tracer_program_test {
 
 using path_tracer::Layout;
 using path_tracer::make_layout;
@@ -355,4 +355,4 @@ TEST(PathTracerStart, SemaphoresZeroAndOneAreTheHosts) {
       << "a second program on one machine";
 }
 
-}  // namespace
+}  // namespace path_tracer_program_test

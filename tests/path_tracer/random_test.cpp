@@ -9,7 +9,7 @@
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace random_test {
 
 using cn::InstructionClass;
 using path_tracer::Purpose;
@@ -195,4 +195,4 @@ TEST_F(Random, CostsTenRoundsOfTwoProductsAndFourConversions) {
                                           {InstructionClass::fp64_mul, 4}}));
 }
 
-}  // namespace
+}  // namespace random_test

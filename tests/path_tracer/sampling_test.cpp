@@ -7,7 +7,7 @@
 #include "tests/support/chi_square.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace sampling_test {
 
 using cn::poly;
 using cn::vec3;
@@ -320,4 +320,4 @@ TEST_F(CameraSampling, DirectionsGoThroughTheFilm) {
   EXPECT_NEAR(s.direction.z[0], expected.z, 4e-16);
 }
 
-}  // namespace
+}  // namespace sampling_test

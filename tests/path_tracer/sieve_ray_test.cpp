@@ -6,7 +6,7 @@
 
 #include "tests/support/vectors.hpp"
 
-namespace {
+namespace sieve_ray_test {
 
 using path_tracer::Crossing;
 using path_tracer::RayOperands;
@@ -192,4 +192,4 @@ INSTANTIATE_TEST_SUITE_P(Places, SieveRayTest,
                                          Place{1e100, 0}, Place{1, 1e6}),
                          [](const auto& suite) { return "number" + std::to_string(suite.index); });
 
-}  // namespace
+}  // namespace sieve_ray_test

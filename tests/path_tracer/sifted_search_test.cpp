@@ -8,7 +8,7 @@
 #include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
-namespace {
+namespace sifted_search_test {
 
 using path_tracer::RayRecord;
 using test_support::RaySearch;
@@ -69,4 +69,4 @@ INSTANTIATE_TEST_SUITE_P(Meshes, SiftedSearch,
                                   std::to_string(2 + int(std::get<1>(suite.param)));
                          });
 
-}  // namespace
+}  // namespace sifted_search_test

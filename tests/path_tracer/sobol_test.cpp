@@ -8,7 +8,7 @@
 #include "tests/support/number_samples.hpp"
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace sobol_test {
 
 using cn::InstructionClass;
 using path_tracer::Purpose;
@@ -216,4 +216,4 @@ TEST_F(Sobol, CostOfAPair) {
                                           {InstructionClass::fp64_mul, 2}}));
 }
 
-}  // namespace
+}  // namespace sobol_test

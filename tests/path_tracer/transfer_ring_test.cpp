@@ -6,7 +6,7 @@
 
 #include "tests/support/late_machine.hpp"
 
-namespace {
+namespace transfer_ring_test {
 
 using cn::LaneMask;
 using cn::MonoPlaces;
@@ -205,4 +205,4 @@ TEST_F(TransferRingTest, RunsOutOfPolySramOrSemaphoresByName) {
   }
 }
 
-}  // namespace
+}  // namespace transfer_ring_test

@@ -9,7 +9,7 @@
 #include "firmware/path_tracer/stages/ray_queue.hpp"
 #include "testbench/machine/native_machine.hpp"
 
-namespace {
+namespace traversal_bin_test {
 
 using path_tracer::make_layout;
 using path_tracer::ProgramConfig;
@@ -227,4 +227,4 @@ TEST_F(RayQueueTest, KnowsTheLastStepThatBroughtRays) {
   saves->wait_until(7);
 }
 
-}  // namespace
+}  // namespace traversal_bin_test

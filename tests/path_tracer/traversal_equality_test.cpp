@@ -9,7 +9,7 @@
 #include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
-namespace {
+namespace traversal_equality_test {
 
 using path_tracer::NodeFormat;
 using path_tracer::QueuedRay;
@@ -179,4 +179,4 @@ TEST(TraversalTurns, AreFewWhereTreeletsAndStacksAreLarge) {
   EXPECT_LT(turns(16, 32, 2), turns(16, 32, 1));
 }
 
-}  // namespace
+}  // namespace traversal_equality_test

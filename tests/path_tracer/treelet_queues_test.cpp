@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-namespace {
+namespace treelet_queues_test {
 
 using path_tracer::ProgramConfig;
 using path_tracer::TreeletQueues;
@@ -168,4 +168,4 @@ TEST_F(TreeletQueuesTest, LoseNoRayWhateverRaysAskFor) {
   }
 }
 
-}  // namespace
+}  // namespace treelet_queues_test

@@ -9,7 +9,7 @@
 #include "firmware/path_tracer/geometry/triangle.hpp"
 #include "tests/support/vectors.hpp"
 
-namespace {
+namespace triangle_record_test {
 
 using cn::poly;
 using cn::vec3;
@@ -371,4 +371,4 @@ TEST_F(SearchOrder, DoesNotMatterAmongCoplanarTriangles) {
   }
 }
 
-}  // namespace
+}  // namespace triangle_record_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/strip_fixture.hpp"
 
-namespace {
+namespace triangle_test {
 
 using cn::InstructionClass;
 using cn::poly;
@@ -368,4 +368,4 @@ TEST_F(TriangleTest, IssuesTheSameForEveryRayWithoutTies) {
   EXPECT_GT(issue_tree.total()[InstructionClass::fp64_mul], hit[InstructionClass::fp64_mul]);
 }
 
-}  // namespace
+}  // namespace triangle_test

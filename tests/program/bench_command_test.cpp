@@ -6,7 +6,7 @@
 
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace bench_command_test {
 
 using test_support::CommandResult;
 using Words = std::vector<std::string>;
@@ -134,4 +134,4 @@ TEST_F(BenchCommand, WrongInputIsNamed) {
   expect_error({"bench", "error", kCornellBox, "--reference", "plain.exr"}, {"plain.exr", "csx600.seed"});
 }
 
-}  // namespace
+}  // namespace bench_command_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace command_line_errors_test {
 
 using test_support::CommandResult;
 using test_support::SceneFiles;
@@ -310,4 +310,4 @@ TEST_F(CommandLineErrors, WindowAfterTheRunFailsItButLosesNoImage) {
   EXPECT_EQ(files(), Words{"a.exr"});
 }
 
-}  // namespace
+}  // namespace command_line_errors_test

@@ -13,7 +13,7 @@
 #include "model/config/chip_parameters.hpp"
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace command_line_test {
 
 using nlohmann::json;
 using test_support::CommandResult;
@@ -237,4 +237,4 @@ TEST_F(CommandLine, HelpIsNotAnError) {
   }
 }
 
-}  // namespace
+}  // namespace command_line_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace ranks_test {
 
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
@@ -79,4 +79,4 @@ TEST_F(Ranks, RecordAPointThatFails) {
   EXPECT_EQ(points[3]["status"], "done");
 }
 
-}  // namespace
+}  // namespace ranks_test

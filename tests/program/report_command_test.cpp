@@ -8,7 +8,7 @@
 
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace report_command_test {
 
 using test_support::CommandResult;
 using Words = std::vector<std::string>;
@@ -150,4 +150,4 @@ TEST_F(ReportCommand, BadInput) {
   EXPECT_EQ(std::filesystem::exists(directory() / "report.html"), false);
 }
 
-}  // namespace
+}  // namespace report_command_test

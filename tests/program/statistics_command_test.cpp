@@ -5,7 +5,7 @@
 
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace statistics_command_test {
 
 using nlohmann::ordered_json;
 using test_support::CommandResult;
@@ -169,4 +169,4 @@ TEST_F(StatisticsCommands, GoldenUpdatesWithOneCommandAndShowsWhatMoved) {
                "none/grid.toml: cannot be read as TOML: File could not be opened for reading");
 }
 
-}  // namespace
+}  // namespace statistics_command_test

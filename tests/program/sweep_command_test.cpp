@@ -14,7 +14,7 @@
 
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace sweep_command_test {
 
 using Json = nlohmann::json;
 using test_support::CommandResult;
@@ -145,4 +145,4 @@ TEST_F(SweepCommand, BadInput) {
   EXPECT_EQ(files(), (Words{"bad.toml", "file", "other/points.jsonl", "s.toml"}));
 }
 
-}  // namespace
+}  // namespace sweep_command_test

@@ -7,7 +7,7 @@
 #include "firmware/cn/simd/level.hpp"
 #include "tests/support/command_line.hpp"
 
-namespace {
+namespace validate_command_test {
 
 using nlohmann::json;
 using test_support::CommandResult;
@@ -101,4 +101,4 @@ TEST_F(ValidateCommand, WrongInputIsOneLineAndLeavesNothing) {
   }
 }
 
-}  // namespace
+}  // namespace validate_command_test

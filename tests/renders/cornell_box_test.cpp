@@ -14,7 +14,7 @@
 
 #include "testbench/scene/scene_file.hpp"
 
-namespace {
+namespace cornell_box_test {
 
 using testbench::Scene;
 using testbench::Triangle;
@@ -245,4 +245,4 @@ TEST(CornellBox, overlap_check_finds_an_overlap) {
   EXPECT_FALSE(overlap_in_plane(a, beside));
 }
 
-}  // namespace
+}  // namespace cornell_box_test

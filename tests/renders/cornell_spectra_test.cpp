@@ -14,7 +14,7 @@
 
 #include "testbench/scene/scene_file.hpp"
 
-namespace {
+namespace cornell_spectra_test {
 
 constexpr int kFirstWavelength = 400;
 constexpr int kLastWavelength = 700;
@@ -155,4 +155,4 @@ TEST(CornellSpectra, light_of_the_mtl_follows_from_its_spectrum) {
   EXPECT_EQ(material("light").reflectance, glm::dvec3(0.78));
 }
 
-}  // namespace
+}  // namespace cornell_spectra_test

@@ -12,7 +12,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/statistics.hpp"
 
-namespace {
+namespace direct_light_test {
 
 using path_tracer::Program;
 using test_support::FilmSize;
@@ -224,4 +224,4 @@ TEST(DirectLight, TheBackOfTheLightLightsNothing) {
   }
 }
 
-}  // namespace
+}  // namespace direct_light_test

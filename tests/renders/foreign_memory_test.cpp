@@ -11,7 +11,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace foreign_memory_test {
 
 using model::TimingStyle;
 using path_tracer::Program;
@@ -152,4 +152,4 @@ TEST_P(ForeignLatency, IsFeltByARead) {
 INSTANTIATE_TEST_SUITE_P(Styles, ForeignLatency,
                          testing::Values(TimingStyle::loosely_timed, TimingStyle::approximately_timed));
 
-}  // namespace
+}  // namespace foreign_memory_test

@@ -13,7 +13,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/statistics.hpp"
 
-namespace {
+namespace furnace_test {
 
 using path_tracer::Program;
 using path_tracer::RadianceRecord;
@@ -218,4 +218,4 @@ TEST(Furnace, FilmHoldsTheMeanOfThePaths) {
   EXPECT_EQ(film.sha256(), render_natively(scene, options).film.sha256());
 }
 
-}  // namespace
+}  // namespace furnace_test

@@ -22,7 +22,7 @@
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace invariants_test {
 
 using path_tracer::Level;
 using path_tracer::Program;
@@ -350,4 +350,4 @@ TEST(RejectedSamples, StopTheRunByName) {
   }
 }
 
-}  // namespace
+}  // namespace invariants_test

@@ -9,7 +9,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace mesh_render_test {
 
 using path_tracer::Program;
 using test_support::render_options;
@@ -69,4 +69,4 @@ TEST_F(MeshRender, NoTriangleIsSkipped) {
   }
 }
 
-}  // namespace
+}  // namespace mesh_render_test

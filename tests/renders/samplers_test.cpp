@@ -16,7 +16,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/statistics.hpp"
 
-namespace {
+namespace samplers_test {
 
 using path_tracer::LightSampling;
 using path_tracer::Program;
@@ -186,4 +186,4 @@ TEST(Samplers, SolidAngleTakesTheVarianceOfAnOpenLight) {
   EXPECT_LT(by_angle, 0.2 * by_area);
 }
 
-}  // namespace
+}  // namespace samplers_test

@@ -10,7 +10,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace {
+namespace shadow_rays_test {
 
 using path_tracer::Program;
 using test_support::closed_cube;
@@ -127,4 +127,4 @@ TEST(ShadowRays, TheirNumberDependsOnTheSceneOnly) {
   }
 }
 
-}  // namespace
+}  // namespace shadow_rays_test

@@ -12,7 +12,7 @@
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace timing_agreement_test {
 
 using model::TimingStyle;
 using path_tracer::Program;
@@ -110,4 +110,4 @@ TEST_F(TimingAgreement, WavesLogsAndTimelinesChangeNoCycleOfAnApproximatelyTimed
   }
 }
 
-}  // namespace
+}  // namespace timing_agreement_test

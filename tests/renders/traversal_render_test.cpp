@@ -9,7 +9,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace traversal_render_test {
 
 using path_tracer::NodeFormat;
 using path_tracer::Program;
@@ -219,4 +219,4 @@ TEST_F(TraversalRender, FitsSixKibibytesWithOneBlockAhead) {
   }
 }
 
-}  // namespace
+}  // namespace traversal_render_test

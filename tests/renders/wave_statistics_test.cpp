@@ -19,7 +19,7 @@
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/vcd_reader.hpp"
 
-namespace {
+namespace wave_statistics_test {
 
 using model::CycleCause;
 using model::Cycles;
@@ -277,4 +277,4 @@ TEST_P(WaveStatistics, ViewNamesOnlyWhatIsDumped) {
   }
 }
 
-}  // namespace
+}  // namespace wave_statistics_test

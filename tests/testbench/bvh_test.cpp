@@ -11,7 +11,7 @@
 #include "tests/support/input_error.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace {
+namespace bvh_test {
 
 using testbench::Box;
 using testbench::build_balanced_bvh;
@@ -175,4 +175,4 @@ TEST(Bvh, ARayOfASoupIsExpectedToCostAHundredthOfBruteForce) {
   EXPECT_LT(sah_cost(build_bvh(triangles, options), options), 0.01 * double(triangles.size()));
 }
 
-}  // namespace
+}  // namespace bvh_test

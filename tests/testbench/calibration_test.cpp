@@ -16,7 +16,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace calibration_test {
 
 using path_tracer::Program;
 using testbench::Assumptions;
@@ -209,4 +209,4 @@ TEST_F(PresetPaper, MeetsTheFittedCells) {
   }
 }
 
-}  // namespace
+}  // namespace calibration_test

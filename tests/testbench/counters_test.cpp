@@ -18,7 +18,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace counters_test {
 
 using nlohmann::ordered_json;
 using path_tracer::Program;
@@ -257,4 +257,4 @@ TEST_F(CountersOfRuns, FilesThatAreNoStatisticsAreRefusedByName) {
   EXPECT_EQ(refusal(other.dump()), "run.json: machine: missing; allowed is a whole statistics file");
 }
 
-}  // namespace
+}  // namespace counters_test

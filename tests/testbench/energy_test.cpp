@@ -13,7 +13,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace energy_test {
 
 using cn::InstructionClass;
 using testbench::ChipStatistics;
@@ -203,4 +203,4 @@ TEST_F(EnergyOfRuns, DgemmDoesTheOperationsThatItsWorkIs) {
   EXPECT_EQ(roofline.roofs.size(), 4u);
 }
 
-}  // namespace
+}  // namespace energy_test

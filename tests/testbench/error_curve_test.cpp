@@ -7,7 +7,7 @@
 
 #include "testbench/film/light_pixels.hpp"
 
-namespace {
+namespace error_curve_test {
 
 using testbench::ExrFilm;
 using testbench::Film;
@@ -155,4 +155,4 @@ TEST(LightPixels, TrianglesBehindTheCameraAreNoneAndThroughItAreClipped) {
   EXPECT_EQ(marked(floor), 32);
 }
 
-}  // namespace
+}  // namespace error_curve_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/scenes.hpp"
 
-namespace {
+namespace faces_test {
 
 using testbench::number_faces;
 using testbench::Scene;
@@ -76,4 +76,4 @@ TEST(Faces, AMillionDuplicatesShareOneWithoutLookingAtEachOther) {
   for (const std::int32_t face : faces) ASSERT_EQ(face, 0);
 }
 
-}  // namespace
+}  // namespace faces_test

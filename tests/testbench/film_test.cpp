@@ -9,7 +9,7 @@
 
 #include "testbench/film/film.hpp"
 
-namespace {
+namespace film_test {
 
 using testbench::Film;
 using testbench::FilmSize;
@@ -230,4 +230,4 @@ TEST(FilmScale, is_the_power_of_two_at_or_above_the_largest_emission) {
   EXPECT_NO_THROW(Film({1, 1}, scale_of(1e12)));
 }
 
-}  // namespace
+}  // namespace film_test

@@ -11,7 +11,7 @@
 #include "testbench/system/error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace generated_scene_test {
 
 using testbench::generate_scene;
 using testbench::GeneratedScene;
@@ -88,4 +88,4 @@ TEST(GeneratedScene, NumbersOutOfRangeAreNamed) {
   EXPECT_THROW(generate_scene(GeneratedScene::blob, 10000001), testbench::InputError);
 }
 
-}  // namespace
+}  // namespace generated_scene_test

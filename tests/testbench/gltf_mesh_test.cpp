@@ -13,7 +13,7 @@
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace gltf_mesh_test {
 
 using testbench::GltfFile;
 using testbench::InputError;
@@ -377,4 +377,4 @@ TEST_F(GltfMesh, RefusesFilesThatAreNoGltf) {
   EXPECT_NE(error_of(write("b.gltf", gltf.json())), "");
 }
 
-}  // namespace
+}  // namespace gltf_mesh_test

@@ -9,7 +9,7 @@
 
 #include "testbench/system/error.hpp"
 
-namespace {
+namespace golden_test {
 
 using testbench::GoldenGrid;
 using testbench::GoldenTables;
@@ -186,4 +186,4 @@ TEST_F(Golden, FilesThatAreNoTablesAreRefusedByName) {
       "a.csv:2: chip.host_link.host_dmas: found the key's old name, allowed is chip.host_link.transfers");
 }
 
-}  // namespace
+}  // namespace golden_test

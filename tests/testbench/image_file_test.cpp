@@ -24,7 +24,7 @@
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace image_file_test {
 
 namespace fs = std::filesystem;
 using testbench::Film;
@@ -270,4 +270,4 @@ TEST_F(ImageFileTest, require_writable_leaves_nothing_behind) {
   fs::current_path(here);
 }
 
-}  // namespace
+}  // namespace image_file_test

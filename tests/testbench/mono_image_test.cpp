@@ -11,7 +11,7 @@
 #include "tests/support/input_error.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace {
+namespace mono_image_test {
 
 using path_tracer::CameraRecord;
 using path_tracer::LightRecord;
@@ -338,4 +338,4 @@ TEST(MonoImage, PiecesLieOneBehindTheOther) {
   EXPECT_EQ(layout.scene_bytes, layout.ray_bin.address);
 }
 
-}  // namespace
+}  // namespace mono_image_test

@@ -6,7 +6,7 @@
 
 #include "testbench/machine/native_machine.hpp"
 
-namespace {
+namespace native_threads_test {
 
 using cn::Machine;
 using cn::MachineFault;
@@ -116,4 +116,4 @@ TEST_F(NativeThreads, StartOutsideARunIsAFault) {
   EXPECT_THROW(machine.start_thread(kAbove, "loads", [] {}), MachineFault);
 }
 
-}  // namespace
+}  // namespace native_threads_test

@@ -8,7 +8,7 @@
 #include "testbench/bvh/build_bvh.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace {
+namespace node_format_test {
 
 using path_tracer::NodeFormat;
 using path_tracer::NodeLayout;
@@ -142,4 +142,4 @@ TEST(NodeLayout, SizesOfANode) {
   EXPECT_EQ((NodeLayout{NodeFormat::quantised8, 2}.node_bytes()), 16 + 16 + 2 * 4);
 }
 
-}  // namespace
+}  // namespace node_format_test

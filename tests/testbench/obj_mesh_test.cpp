@@ -8,7 +8,7 @@
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace obj_mesh_test {
 
 using testbench::load_obj_mesh;
 using testbench::Mesh;
@@ -226,4 +226,4 @@ TEST_F(ObjMeshTest, loads_a_million_triangles_quickly) {
             60.0);  // takes about 1 s; quadratic behaviour would take hours
 }
 
-}  // namespace
+}  // namespace obj_mesh_test

@@ -17,7 +17,7 @@
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/vcd_reader.hpp"
 
-namespace {
+namespace output_stream_test {
 
 namespace fs = std::filesystem;
 
@@ -173,4 +173,4 @@ TEST_F(OutputStream, FstThatIsCutShortIsTold) {
   EXPECT_FALSE(fs::exists(directory_ / "a.fst"));
 }
 
-}  // namespace
+}  // namespace output_stream_test

@@ -11,7 +11,7 @@
 #include "testbench/mono_image/mono_image.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace {
+namespace paper_alternatives_test {
 
 using testbench::Assumptions;
 using testbench::Scene;
@@ -123,4 +123,4 @@ TEST_F(PaperAlternatives, AllRunTheFilmOfTheBase) {
   }
 }
 
-}  // namespace
+}  // namespace paper_alternatives_test

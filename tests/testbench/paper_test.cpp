@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace paper_test {
 
 using path_tracer::Program;
 using testbench::paper_rows;
@@ -88,4 +88,4 @@ TEST(Paper, ProgramsHaveTheNamesOfTheCommandLine) {
   EXPECT_STREQ(testbench::program_name(Program::full), "full");
 }
 
-}  // namespace
+}  // namespace paper_test

@@ -11,7 +11,7 @@
 #include "testbench/system/error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace point_store_test {
 
 using testbench::InputError;
 using testbench::PointStore;
@@ -102,4 +102,4 @@ TEST_F(PointStoreTest, IsOfOneProcessAtATime) {
   EXPECT_THROW(PointStore(directory_, "build"), InputError);
 }
 
-}  // namespace
+}  // namespace point_store_test

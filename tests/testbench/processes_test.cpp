@@ -14,7 +14,7 @@
 
 #include "testbench/system/error.hpp"
 
-namespace {
+namespace processes_test {
 
 using testbench::InputError;
 using testbench::run_in_processes;
@@ -177,4 +177,4 @@ TEST(Processes, OnlyRunningJobsEndBeforeTheErrorIsThrown) {
   EXPECT_EQ(journal.text(), "xx");
 }
 
-}  // namespace
+}  // namespace processes_test

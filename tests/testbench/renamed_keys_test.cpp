@@ -7,7 +7,7 @@
 #include "testbench/statistics/counters.hpp"
 #include "testbench/system/error.hpp"
 
-namespace {
+namespace renamed_keys_test {
 
 using testbench::all_counters;
 using testbench::new_name_of;
@@ -48,4 +48,4 @@ TEST(RenamedKeys, AnOldOneIsRefusedWithItsNewName) {
   }
 }
 
-}  // namespace
+}  // namespace renamed_keys_test

@@ -17,7 +17,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
 
-namespace {
+namespace replay_test {
 
 using path_tracer::Program;
 using test_support::render_options;
@@ -173,4 +173,4 @@ TEST_F(Replay, AnAuditFindsTheRecordingOfAnotherRun) {
   }
 }
 
-}  // namespace
+}  // namespace replay_test

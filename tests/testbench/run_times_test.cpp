@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace run_times_test {
 
 using testbench::median;
 using testbench::ratio;
@@ -27,4 +27,4 @@ TEST(RunTimes, RatioIgnoresOneDisturbedRun) {
   EXPECT_EQ(ratio(RunTimes{{3, 90, 3}}, RunTimes{{1, 1, 1}}), 3);
 }
 
-}  // namespace
+}  // namespace run_times_test

@@ -10,7 +10,7 @@
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-namespace {
+namespace scene_file_test {
 
 using testbench::load_scene;
 using testbench::Scene;
@@ -190,4 +190,4 @@ TEST_F(SceneFileTest, refuses_broken_or_missing_files) {
   expect_error_of(directory_, {"scene.toml"});
 }
 
-}  // namespace
+}  // namespace scene_file_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace statistics_difference_test {
 
 using testbench::compare;
 using testbench::Comparison;
@@ -91,4 +91,4 @@ TEST(StatisticsDifference, TextShowsGroupValuesShareAndUnit) {
   EXPECT_EQ(testbench::difference_text({}), "");
 }
 
-}  // namespace
+}  // namespace statistics_difference_test

@@ -12,7 +12,7 @@
 #include "testbench/sweep/sweep_points.hpp"
 #include "testbench/system/error.hpp"
 
-namespace {
+namespace sweep_file_test {
 
 using testbench::InputError;
 using testbench::Setting;
@@ -214,4 +214,4 @@ TEST_F(SweepFileTest, ThePlanReplaysWhatIsSharedAndNothingElse) {
   EXPECT_FALSE(nothing.next(0));
 }
 
-}  // namespace
+}  // namespace sweep_file_test

@@ -7,7 +7,7 @@
 #include "model/config/chip_presets.hpp"
 #include "testbench/machine/native_machine.hpp"
 
-namespace {
+namespace traversal_choice_test {
 
 using path_tracer::ProgramConfig;
 using path_tracer::Traversal;
@@ -213,4 +213,4 @@ TEST(ResidentNodes, AreNoMoreThanATreeHas) {
   EXPECT_EQ(program.tree.resident_nodes, 2) << "as it was asked for";
 }
 
-}  // namespace
+}  // namespace traversal_choice_test

@@ -10,7 +10,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/node_layouts.hpp"
 
-namespace {
+namespace tree_image_test {
 
 using path_tracer::ChildReference;
 using path_tracer::max_tree_levels;
@@ -124,4 +124,4 @@ TEST(TreeImage, IsBalancedWhereItWouldBeTooDeep) {
   }
 }
 
-}  // namespace
+}  // namespace tree_image_test

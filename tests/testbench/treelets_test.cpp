@@ -9,7 +9,7 @@
 #include "testbench/bvh/node_format.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace {
+namespace treelets_test {
 
 using path_tracer::NodeFormat;
 using path_tracer::NodeLayout;
@@ -117,4 +117,4 @@ TEST(Treelets, OfNoNodesAreOneNodeThatLeadsNowhere) {
     EXPECT_EQ(decode_reference(bytes.data(), layout, i).count, path_tracer::ChildReference::kNowhere);
 }
 
-}  // namespace
+}  // namespace treelets_test

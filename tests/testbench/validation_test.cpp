@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace {
+namespace validation_test {
 
 using testbench::Figure;
 using testbench::Published;
@@ -65,4 +65,4 @@ TEST(Validation, ReportsHoldEveryFigure) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
-}  // namespace
+}  // namespace validation_test

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <thread>
 
-namespace {
+namespace workers_test {
 
 using testbench::Workers;
 
@@ -89,4 +89,4 @@ TEST(Workers, EndWithTheProcessThatStartedThem) {
   EXPECT_FALSE(runs());
 }
 
-}  // namespace
+}  // namespace workers_test

@@ -4,12 +4,11 @@
 #include <systemc>
 
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/exit_codes.hpp"
+#include "testbench/commands/version.hpp"
 #include "testbench/system/error.hpp"
 
 namespace {
-
-constexpr int kRunFailed = 1;
-constexpr int kWrongInput = 2;
 
 void add_commands(CLI::App& app) {
   testbench::add_render_command(app);
@@ -25,12 +24,15 @@ void add_commands(CLI::App& app) {
   testbench::add_stats_command(app);
   testbench::add_compare_command(app);
   testbench::add_golden_command(app);
+  testbench::add_completion_command(app);
+  testbench::add_man_command(app);
 }
 
 int run(int argc, char** argv) {
   CLI::App app("A SystemC model of the ClearSpeed CSX600 that runs a binned, n-buffered path tracer",
                "csx600");
   app.require_subcommand(1);
+  app.set_version_flag("--version", testbench::version_text(), "Print the version and exit");
   try {
     add_commands(app);
     app.parse(argc, argv);
@@ -38,15 +40,15 @@ int run(int argc, char** argv) {
     return app.exit(help);
   } catch (const CLI::Error& error) {
     std::fprintf(stderr, "csx600: %s (see csx600 --help)\n", error.what());
-    return kWrongInput;
+    return testbench::kWrongInput.code;
   } catch (const testbench::InputError& error) {
     std::fprintf(stderr, "csx600: %s\n", error.what());
-    return kWrongInput;
+    return testbench::kWrongInput.code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "csx600: %s\n", error.what());
-    return kRunFailed;
+    return testbench::kRunFailed.code;
   }
-  return 0;
+  return testbench::kDone.code;
 }
 
 }  // namespace

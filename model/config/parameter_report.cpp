@@ -88,6 +88,19 @@ std::string parameter_json_report(const ChipConfig& config) {
   return report.dump(2) + "\n";
 }
 
+std::string parameter_markdown(const ChipConfig& config) {
+  std::ostringstream out;
+  out << "| key | value | unit | confidence | allowed | meaning |\n|---|---|---|---|---|---|\n";
+  for (const ParameterInfo& parameter : parameter_table())
+    out << "| `" << parameter.key << "` | " << value_text(parameter.read(config)) << " | " << parameter.unit
+        << " | " << provenance(config, parameter).confidence << " | " << allowed_text(parameter) << " | "
+        << parameter.meaning << " |\n";
+  out << "\n| source | title |\n|---|---|\n";
+  for (const ParameterSource& source : parameter_sources())
+    out << "| " << source.id << " | " << source.title << " |\n";
+  return out.str();
+}
+
 std::string preset_text_report() {
   std::ostringstream out;
   for (const Preset& preset : preset_table()) {

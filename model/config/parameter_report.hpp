@@ -16,6 +16,9 @@ std::string parameter_text_report(const ChipConfig& config);
 /// that the preset gives, `preset_reason`.
 std::string parameter_json_report(const ChipConfig& config);
 
+/// A Markdown table of key, value, unit, confidence, range and meaning, and one of the sources.
+std::string parameter_markdown(const ChipConfig& config);
+
 /// Every preset with its overrides and their reasons.
 std::string preset_text_report();
 

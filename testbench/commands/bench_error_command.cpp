@@ -1,18 +1,19 @@
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <sstream>
 
 #include "testbench/commands/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
+#include "testbench/commands/firmware_options.hpp"
+#include "testbench/commands/named_values.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/film/chart.hpp"
 #include "testbench/film/error_curve.hpp"
 #include "testbench/film/light_pixels.hpp"
 #include "testbench/run/render_parts.hpp"
 #include "testbench/scene/scene_file.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/progress_bar.hpp"
 
@@ -24,13 +25,13 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 struct BenchErrorCommand {
   std::string scene;
   std::string reference;
-  std::string csv;
-  std::string plot;
+  OutputFiles outputs;
   bool native_only = false;
   int samples = 1024;
   RenderOptions options;
   ChipOptions chip;
   LevelOption level;
+  FirmwareOptions firmware;
 
   void run();
 
@@ -44,13 +45,7 @@ struct BenchErrorCommand {
 void BenchErrorCommand::require_outputs() const {
   if ((samples & (samples - 1)) != 0)
     throw InputError("--samples: found " + std::to_string(samples) + ", allowed is a power of two");
-  const auto same = [](const std::string& a, const std::string& b) {
-    return std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
-  };
-  if (!csv.empty() && !plot.empty() && same(csv, plot))
-    throw InputError("--plot: found '" + plot + "', which --csv writes too; allowed is a file of its own");
-  if (!csv.empty()) require_writable(csv);
-  if (!plot.empty()) require_writable(plot);
+  outputs.require_writable();
 }
 
 ExrFilm BenchErrorCommand::load_reference() const {
@@ -141,7 +136,7 @@ std::string to_csv(const std::vector<CurvePoint>& points) {
          "timed_cpu_seconds,simulated_seconds,native_mse_seconds,timed_mse_seconds\n";
   const auto field = [&](double value) {
     csv << ',';
-    if (value == value) csv << value;  // nothing where there is no value
+    if (value == value) csv << value;  // empty where there is no value
   };
   for (const CurvePoint& point : points) {
     csv << point.samples;
@@ -210,7 +205,8 @@ void BenchErrorCommand::run() {
               loaded.film.height, reference.c_str());
   print_table(points, native_only);
   print_summary(points, native_only);
-  if (!csv.empty()) write_bytes_atomically(csv, to_csv(points));
+  outputs.write("--csv", [&] { return to_csv(points); });
+  const std::string& plot = outputs.path("--plot");
   if (plot.empty()) return;
   if (can_draw_charts())
     write_chart(plot, make_chart("Error against time: " + loaded.name, points, native_only));
@@ -226,18 +222,19 @@ void add_bench_error_command(CLI::App& bench) {
                             "Error against samples, CPU time and simulated time, natively and with "
                             "timing on");
   const auto state = std::make_shared<BenchErrorCommand>();
-  command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
+  add_scene_argument(command, state->scene);
   command
       .add_option("--reference", state->reference, "File of `csx600 bench reference`; sets the film's size")
+      ->type_name("FILE")
       ->required();
-  command.add_option("--samples", state->samples, "Largest number of paths a pixel, a power of two")
-      ->check(CLI::Range(1, 1 << 20))
+  in_range(command.add_option("--samples", state->samples, "Largest number of paths a pixel, a power of two"),
+           1, 1 << 20)
       ->capture_default_str();
   command.add_flag("--native", state->native_only, "Leave out the runs with timing on");
-  command.add_option("--csv", state->csv, "Write the curve as CSV");
-  command.add_option("--plot", state->plot, "Draw RMSE over seconds, .png or .svg (needs gnuplot)");
-  choose_best_sampling(state->options.program);
-  add_sampling_options(command, state->options.program);
+  state->outputs.add_to(command, "--csv", "Write the curve as CSV");
+  state->outputs.add_to(command, "--plot", "Draw RMSE over seconds, .png or .svg (needs gnuplot)");
+  state->options.program = path_tracer::default_program();
+  state->firmware.add_to(command, state->options.program, {path_tracer::OptionGroup::sampling});
   state->chip.add_to(command, "csx600");
   state->level.add_to(command);
   command.callback([state] { state->run(); });

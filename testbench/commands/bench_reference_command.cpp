@@ -4,11 +4,13 @@
 
 #include "testbench/commands/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
+#include "testbench/commands/firmware_options.hpp"
+#include "testbench/commands/named_values.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/run/render_parts.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/statistics/render_report.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/progress_bar.hpp"
 
@@ -21,10 +23,11 @@ constexpr int kSamplesOfPart = 64;
 struct BenchReferenceCommand {
   std::string scene;
   std::string size;
-  std::string exr;
+  OutputFiles outputs;
   RenderOptions options;
   ChipOptions chip;
   LevelOption level;
+  FirmwareOptions firmware;
   int jobs = 1;
 
   void run();
@@ -54,13 +57,14 @@ RenderResult BenchReferenceCommand::render(const Scene& loaded) const {
 }
 
 void BenchReferenceCommand::run() {
-  require_writable(exr);
+  outputs.require_writable();
   options.chip = chip.chip();
   options.level = level.level();
   const Scene loaded = load_scene_for_film(scene, size);
   const RenderResult result = render(loaded);
   std::map<std::string, std::string> attributes = render_provenance({scene, options, true}, result);
   attributes[kSeedAttribute] = std::to_string(options.program.seed);
+  const std::string& exr = outputs.path("--output");
   write_exr(exr, result.film, attributes);
   std::printf("%s, %d x %d, %d samples a pixel, seed %llu: %s, %.1f s CPU\n", loaded.name.c_str(),
               loaded.film.width, loaded.film.height, options.work.samples,
@@ -74,21 +78,18 @@ void add_bench_reference_command(CLI::App& bench) {
       "reference", "Render the image that errors are measured against: independent samples, many of them");
   const auto state = std::make_shared<BenchReferenceCommand>();
   state->options.work.samples = 16384;
+  state->options.program = path_tracer::default_program();
   // Independent samples, so that the variance layers are the error; light sampled otherwise than by default,
   // so that a bias of either shows.
   state->options.program.sampler = path_tracer::Sampler::philox;
   state->options.program.light_sampling = path_tracer::LightSampling::area;
-  state->options.program.roulette_start = kRouletteStart;
   state->options.program.seed = kReferenceSeed;
-  command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
-  command.add_option("-o,--output", state->exr, "OpenEXR file to write")->required();
-  command.add_option("--samples", state->options.work.samples, "Paths a pixel")
-      ->check(CLI::Range(2, 1 << 30))
+  add_scene_argument(command, state->scene);
+  state->outputs.add_to(command, "-o,--output", "OpenEXR file to write").required();
+  in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 2, 1 << 30)
       ->capture_default_str();
-  command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
-  command.add_option("--seed", state->options.program.seed, "Seed of the random numbers")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_size_option(command, state->size);
+  state->firmware.add_to(command, state->options.program, *path_tracer::find_option("seed"));
   add_jobs_option(command, state->jobs);
   state->chip.add_to(command, "csx600");
   state->level.add_to(command);

@@ -6,12 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/commands/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
+#include "testbench/commands/named_values.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/paper/paper.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/scene/scene_file.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"
 #include "testbench/system/processes.hpp"
@@ -68,8 +70,7 @@ struct BenchSpeedCommand {
   LevelOption level;
   int samples = 4;
   int repetitions = 5;
-  std::string json;
-  std::string csv;
+  OutputFiles outputs;
 
   void run();
 
@@ -79,7 +80,7 @@ struct BenchSpeedCommand {
   Json to_json(const std::vector<Variant>& variants) const;
 };
 
-/// Gone with all that is in it at the end of the scope.
+/// Removed with all that is in it at the end of the scope.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -138,8 +139,8 @@ std::vector<Variant> BenchSpeedCommand::make_variants(const Scene& loaded) const
   };
   for (const Program program : kPaperPrograms) {
     const auto set_program = [program](Variant& variant) { variant.options.program.program = program; };
-    add(program_name(program), "timed", set_program);
-    add(program_name(program), "native", [&](Variant& variant) {
+    add(name_of(program), "timed", set_program);
+    add(name_of(program), "native", [&](Variant& variant) {
       set_program(variant);
       variant.native = true;
     });
@@ -178,11 +179,11 @@ const Variant& find(const std::vector<Variant>& variants, const std::string& gro
 
 void print_programs(const std::vector<Variant>& variants) {
   std::printf("  %-10s %12s %12s %14s %16s %14s\n", "program", "timed", "native", "timed/native",
-              "simulated/host", "times silicon");
+              "simulated/CPU", "times silicon");
   for (const Program program : kPaperPrograms) {
-    const Variant& timed = find(variants, program_name(program), "timed");
-    const Variant& native = find(variants, program_name(program), "native");
-    std::printf("  %-10s %7.2f M/s  %7.2f M/s  %13.2f  %15.1f  %13.1f\n", program_name(program),
+    const Variant& timed = find(variants, name_of(program), "timed");
+    const Variant& native = find(variants, name_of(program), "native");
+    std::printf("  %-10s %7.2f M/s  %7.2f M/s  %13.2f  %15.1f  %13.1f\n", name_of(program),
                 timed.segments_per_second() * 1e-6, native.segments_per_second() * 1e-6,
                 ratio(timed.times, native.times), timed.simulated_seconds / timed.times.median(),
                 timed.segments_per_second() / silicon_segments_per_second(program));
@@ -230,8 +231,7 @@ std::string to_csv(const std::vector<Variant>& variants) {
 }
 
 void BenchSpeedCommand::run() {
-  for (const std::string& path : {json, csv})
-    if (!path.empty()) require_writable(path);
+  outputs.require_writable();
   const Scene loaded = load_scene(scene);
   std::vector<Variant> variants = make_variants(loaded);
   measure(loaded, variants);
@@ -242,25 +242,25 @@ void BenchSpeedCommand::run() {
   print_group(variants, "waves", "untraced");
   print_group(variants, "PEs", "96");
   print_group(variants, "level", cn::name_of(variants.back().options.level));
-  if (!json.empty()) write_bytes_atomically(json, to_json(variants).dump(2) + "\n");
-  if (!csv.empty()) write_bytes_atomically(csv, to_csv(variants));
+  outputs.write("--json", [&] { return to_json(variants).dump(2) + "\n"; });
+  outputs.write("--csv", [&] { return to_csv(variants); });
 }
 
 }  // namespace
 
 void add_bench_speed_command(CLI::App& bench) {
   CLI::App& command = *bench.add_subcommand(
-      "speed", "Host time of renders: with and without timing, traced, by number of PEs, by x86-64 level");
+      "speed",
+      "Simulator time of renders: with and without timing, traced, by number of PEs, by x86-64 level");
   const auto state = std::make_shared<BenchSpeedCommand>();
-  command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
+  add_scene_argument(command, state->scene);
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
   add_samples_option(command, state->samples);
-  command.add_option("--repetitions", state->repetitions, "Runs of each kind")
-      ->check(CLI::Range(1, 1000))
+  in_range(command.add_option("--repetitions", state->repetitions, "Runs of each kind"), 1, 1000)
       ->capture_default_str();
-  command.add_option("--json", state->json, "Also write every run's time to this file");
-  command.add_option("--csv", state->csv, "Also write the medians to this file");
+  state->outputs.add_to(command, "--json", "Also write every run's time to this file");
+  state->outputs.add_to(command, "--csv", "Also write the medians to this file");
   command.callback([state] { state->run(); });
 }
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "testbench/commands/command_options.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/scene/scene_file.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/processes.hpp"
 #include "testbench/system/progress_bar.hpp"
 #include "testbench/validation/timing_comparison.hpp"
@@ -25,7 +25,7 @@ struct BenchTimingCommand {
   LevelOption level;
   int samples = 4;
   int jobs = 1;
-  std::string json;
+  OutputFiles outputs;
 
   void run() const;
 
@@ -33,7 +33,7 @@ struct BenchTimingCommand {
   std::vector<TimingComparison> measure(const Scene& loaded, const std::vector<TimingPoint>& points) const;
 };
 
-/// Cycles and host seconds of one run.
+/// Cycles and the simulator's seconds of one run.
 std::string run_point(const Scene& scene, RenderOptions options, model::TimingStyle timing) {
   options.timing = timing;
   const RenderResult result = render_on_chip(scene, options);
@@ -60,7 +60,7 @@ std::vector<TimingComparison> BenchTimingCommand::measure(const Scene& loaded,
 }
 
 void print_table(const std::vector<TimingPoint>& points, const std::vector<TimingComparison>& comparisons) {
-  std::printf("  %-34s %14s %14s %9s %10s\n", "", "lt cycles", "at cycles", "lt error", "host time");
+  std::printf("  %-34s %14s %14s %9s %10s\n", "", "lt cycles", "at cycles", "lt error", "slower");
   double worst = 0;
   double sum = 0;
   double slowest = 0;
@@ -74,8 +74,9 @@ void print_table(const std::vector<TimingPoint>& points, const std::vector<Timin
     sum += std::abs(at.error_percent());
     slowest = std::max(slowest, slower);
   }
-  std::printf("Error of lt: %.3f %% mean, %.3f %% worst of %zu; at takes up to %.0f times lt's host time\n",
-              sum / double(points.size()), worst, points.size(), slowest);
+  std::printf(
+      "Error of lt: %.3f %% mean, %.3f %% worst of %zu; at takes up to %.0f times lt's simulator time\n",
+      sum / double(points.size()), worst, points.size(), slowest);
 }
 
 Json to_json(const std::vector<TimingPoint>& points, const std::vector<TimingComparison>& comparisons) {
@@ -91,7 +92,7 @@ Json to_json(const std::vector<TimingPoint>& points, const std::vector<TimingCom
 }
 
 void BenchTimingCommand::run() const {
-  if (!json.empty()) require_writable(json);
+  outputs.require_writable();
   RenderOptions options;
   options.chip = chip.chip();
   options.level = level.level();
@@ -103,21 +104,21 @@ void BenchTimingCommand::run() const {
   std::printf("%s at %d x %d, %d samples a pixel; chip %s; sweeps: program full, n = 1\n\n",
               loaded.name.c_str(), film.width, film.height, samples, options.chip.preset.c_str());
   print_table(points, comparisons);
-  if (!json.empty()) write_bytes_atomically(json, to_json(points, comparisons).dump(2) + "\n");
+  outputs.write("--json", [&] { return to_json(points, comparisons).dump(2) + "\n"; });
 }
 
 }  // namespace
 
 void add_bench_timing_command(CLI::App& bench) {
-  CLI::App& command =
-      *bench.add_subcommand("timing", "Compare loosely timed cycles with approximately timed ones");
+  CLI::App& command = *bench.add_subcommand(
+      "timing", "Compare loosely timed cycles with approximately timed ones, on a film of 96 x 96");
   const auto state = std::make_shared<BenchTimingCommand>();
-  command.add_option("scene", state->scene, "Scene to run, on a film of 96 x 96")->capture_default_str();
+  add_scene_argument(command, state->scene);
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
   add_samples_option(command, state->samples);
   add_jobs_option(command, state->jobs);
-  command.add_option("--json", state->json, "Also write the points to this file, without host times");
+  state->outputs.add_to(command, "--json", "Also write the points to this file, without simulator times");
   command.callback([state] { state->run(); });
 }
 

@@ -5,8 +5,8 @@
 #include "model/config/chip_presets.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/paper/paper_alternatives.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -22,8 +22,7 @@ struct CalibrateCommand {
   LevelOption level;
   CalibrationOptions options;
   bool alternatives = false;
-  std::string header;
-  std::string json;
+  OutputFiles outputs;
 
   void run() const;
 
@@ -61,14 +60,13 @@ Json to_json(const Assumptions& assumptions, const Calibration& result) {
 
 void CalibrateCommand::write_header(const Calibration& result) const {
   if (!result.converged)
-    throw RunError("--write: found no constants that meet the fitted cells; " + header + " is not written");
-  write_bytes_atomically(header, paper_constants_header(result.constants));
+    throw RunError("--write: found no constants that meet the fitted cells; " + outputs.path("--write") +
+                   " is not written");
+  outputs.write("--write", [&] { return paper_constants_header(result.constants); });
 }
 
 void CalibrateCommand::run() const {
-  require_files_of_their_own({{"--write", header}, {"--json", json}});
-  if (!header.empty()) require_writable(header);
-  if (!json.empty()) require_writable(json);
+  outputs.require_writable();
   CalibrationOptions fit = options;
   fit.level = level.level();
   const Assumptions base{"preset paper", chip.chip(), paper_program(), load_scene_for_film(scene, size)};
@@ -88,9 +86,9 @@ void CalibrateCommand::run() const {
     print_row(assumptions, result);
     std::fflush(stdout);
     rows.push_back(to_json(assumptions, result));
-    if (&assumptions == &all.front() && !header.empty()) write_header(result);
+    if (&assumptions == &all.front() && !outputs.path("--write").empty()) write_header(result);
   }
-  if (!json.empty()) write_bytes_atomically(json, rows.dump(2) + "\n");
+  outputs.write("--json", [&] { return rows.dump(2) + "\n"; });
 }
 
 }  // namespace
@@ -100,19 +98,19 @@ void add_calibrate_command(CLI::App& app) {
       "calibrate",
       "Fit the constants of preset paper to three cells of the paper's tables, predict the others");
   const auto state = std::make_shared<CalibrateCommand>();
-  command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
+  add_scene_argument(command, state->scene);
   command.add_option("--closed-scene", state->closed_scene, "Scene of the alternative 'closed box'")
       ->capture_default_str();
-  command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
+  add_size_option(command, state->size);
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
   add_samples_option(command, state->options.samples);
   add_jobs_option(command, state->options.at_once);
   command.add_flag("--alternatives", state->alternatives,
                    "Fit again under each alternative to what the paper leaves open");
-  command.add_option("--write", state->header,
-                     "Write the constants as a C++ header (model/config/paper_constants.hpp)");
-  command.add_option("--json", state->json, "Also write constants and cells to this file");
+  state->outputs.add_to(command, "--write",
+                        "Write the constants as a C++ header (model/config/paper_constants.hpp)");
+  state->outputs.add_to(command, "--json", "Also write constants and cells to this file");
   command.callback([state] { state->run(); });
 }
 

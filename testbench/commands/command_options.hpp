@@ -1,16 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "firmware/path_tracer/kernels/kernels.hpp"
+#include "firmware/cn/simd/level.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
-#include "testbench/run/sampling_choice.hpp"
-#include "testbench/run/traversal_choice.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
@@ -19,18 +15,12 @@ namespace testbench {
 class SetOptions {
  public:
   void add_to(CLI::App& command);
-  /// A preset or file with the settings. Throws InputError.
+  /// The preset or file `name` with the settings. Throws InputError.
   model::ChipConfig chip(const std::string& name) const;
 
  private:
   std::vector<std::string> settings_;
 };
-
-/// An option that names a file to be written, and the file; "" where the option was not given.
-using OutputOption = std::pair<const char*, std::string>;
-
-/// Throws InputError when two options name one file.
-void require_files_of_their_own(const std::vector<OutputOption>& outputs);
 
 /// --chip and --set.
 class ChipOptions {
@@ -48,11 +38,10 @@ class ChipOptions {
 class TimingOption {
  public:
   void add_to(CLI::App& command);
-  model::TimingStyle style() const;
-  const std::string& text() const { return text_; }
+  model::TimingStyle style() const { return style_; }
 
  private:
-  std::string text_ = "lt";
+  model::TimingStyle style_ = model::TimingStyle::loosely_timed;
 };
 
 /// --level: which build of the kernels runs; the bits are the same from each.
@@ -60,10 +49,12 @@ class LevelOption {
  public:
   void add_to(CLI::App& command);
   /// Throws InputError for a level that this machine cannot execute.
-  path_tracer::Level level() const;
+  cn::Level level() const;
 
  private:
-  std::string level_ = "auto";
+  using Choice = int;  ///< a level, or kWidest
+  static constexpr Choice kWidest = -1;
+  Choice choice_ = kWidest;
 };
 
 /// --samples, at least one a pixel; the default is the value in `samples`.
@@ -75,25 +66,14 @@ void add_jobs_option(CLI::App& command, int& jobs);
 /// --check-hazards.
 void add_check_hazards_flag(CLI::App& command, bool& check_hazards);
 
-/// Loads a scene; `size`, "480x480", takes the place of its film's unless it is empty. Throws InputError.
+/// The scene as the command's first argument. The default is the value in `scene`; without one it is
+/// required.
+void add_scene_argument(CLI::App& command, std::string& scene);
+
+/// --size, for load_scene_for_film().
+void add_size_option(CLI::App& command, std::string& size);
+
+/// Loads a scene. Its film has the size `size`, "480x480", unless that is empty. Throws InputError.
 Scene load_scene_for_film(const std::string& path, const std::string& size);
-
-/// How paths are sampled: --sampler, --light-sampling, --roulette-start, --max-survival, --seed. The defaults
-/// are the values in `program`.
-void add_sampling_options(CLI::App& command, path_tracer::ProgramConfig& program);
-
-/// How rays find triangles: --traversal and what the tree looks like.
-class TraversalOption {
- public:
-  /// The tree's defaults are those in `program`, which is also where its options go.
-  void add_to(CLI::App& command, path_tracer::ProgramConfig& program);
-  /// Settles what depends on the scene. Returns why, in a line, or nothing when the user has chosen.
-  std::string choose(const Scene& scene, const model::ChipConfig& chip,
-                     path_tracer::ProgramConfig& program) const;
-
- private:
-  std::optional<path_tracer::Traversal> chosen_;
-  TreeWishes wishes_;
-};
 
 }  // namespace testbench

@@ -20,4 +20,8 @@ void add_stats_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_golden_command(CLI::App& app);
 
+/// What these print describes every subcommand, those that were added later, too.
+void add_completion_command(CLI::App& app);
+void add_man_command(CLI::App& app);
+
 }  // namespace testbench

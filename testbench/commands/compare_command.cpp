@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "testbench/commands/commands.hpp"
+#include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/statistics_difference.hpp"
 #include "testbench/system/error.hpp"
@@ -15,7 +16,7 @@ struct CompareCommand {
   std::string b;
   std::vector<std::string> tolerances;
   std::vector<std::string> ignore;
-  bool with_host = false;
+  bool with_simulator = false;
 
   void run() const;
 
@@ -45,7 +46,7 @@ ComparisonRules CompareCommand::rules() const {
   for (const std::string& text : tolerances) rules.tolerances.push_back(parse_tolerance(text));
   for (const std::string& glob : ignore) require_current_key("--ignore", glob);
   rules.ignore = ignore;
-  if (!with_host) rules.ignore.emplace_back("host.*");
+  if (!with_simulator) rules.ignore.push_back(std::string(kSimulatorSection) + ".*");
   return rules;
 }
 
@@ -67,13 +68,14 @@ void add_compare_command(CLI::App& app) {
   CLI::App& command =
       *app.add_subcommand("compare", "Compare the statistics of two runs; exit code 1 if they differ");
   const auto state = std::make_shared<CompareCommand>();
-  command.add_option("a", state->a, "Statistics of a run")->required();
-  command.add_option("b", state->b, "Statistics of another")->required();
-  command.add_option(
-      "--tolerance", state->tolerances,
-      "KEYGLOB=REL: numbers under these keys may differ by so much; the last that matches counts");
-  command.add_option("--ignore", state->ignore, "KEYGLOB: leave these keys out");
-  command.add_flag("--host", state->with_host, "Compare the host's times and memory, too");
+  command.add_option("a", state->a, "Statistics of a run")->type_name("FILE")->required();
+  command.add_option("b", state->b, "Statistics of another")->type_name("FILE")->required();
+  command
+      .add_option("--tolerance", state->tolerances,
+                  "Numbers under these keys may differ by so much; the last that matches counts")
+      ->type_name("KEYGLOB=REL");
+  command.add_option("--ignore", state->ignore, "Leave these keys out")->type_name("KEYGLOB");
+  command.add_flag("--simulator", state->with_simulator, "Compare the simulator's times and memory, too");
   command.callback([state] { state->run(); });
 }
 

@@ -16,9 +16,7 @@ struct GoldenCommand {
   int jobs = 1;
 
   void run() const {
-    path_tracer::ProgramConfig program;
-    choose_best_sampling(program);
-    const GoldenGrid grid = read_golden_grid(directory, program);
+    const GoldenGrid grid = read_golden_grid(directory);
     const GoldenTables kept = read_golden(directory);
     GoldenTables found;
     {
@@ -27,7 +25,7 @@ struct GoldenCommand {
     }
     const std::string moves = golden_moves(kept, found);
     std::fputs(moves.c_str(), stdout);
-    std::printf("%zu runs, %s\n", grid.runs.size(), moves.empty() ? "nothing moved" : "moved as listed");
+    std::printf("%zu runs, %s\n", grid.runs.size(), moves.empty() ? "no counter moved" : "moved as listed");
     if (update) {
       write_golden(directory, found);
     } else if (!moves.empty()) {
@@ -44,7 +42,9 @@ void add_golden_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand(
       "golden", "Repeat the runs of DIRECTORY/grid.toml and compare them with the tables kept there");
   const auto state = std::make_shared<GoldenCommand>();
-  command.add_option("directory", state->directory, "Where grid.toml and the tables are")->required();
+  command.add_option("directory", state->directory, "Where grid.toml and the tables are")
+      ->type_name("DIRECTORY")
+      ->required();
   command.add_flag("--update", state->update, "Show what moved and write the tables anew");
   add_jobs_option(command, state->jobs);
   command.callback([state] { state->run(); });

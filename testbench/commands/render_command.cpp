@@ -5,6 +5,9 @@
 
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/firmware_options.hpp"
+#include "testbench/commands/named_values.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/commands/wave_options.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/observe/observation.hpp"
@@ -12,7 +15,6 @@
 #include "testbench/statistics/rank_render.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/statistics/statistics_file.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"
 #include "testbench/system/progress_bar.hpp"
@@ -27,14 +29,9 @@ struct RenderCommand {
   ChipOptions chip;
   TimingOption timing;
   LevelOption level;
-  TraversalOption traversal;
-  std::string program = "full";
-  std::string buffer = "both";
-  std::string shadow_rays = "facing";
+  FirmwareOptions firmware;
   bool native = false;
-  std::string exr;
-  std::string png;
-  std::string statistics;
+  OutputFiles outputs;
   bool statistics_text_wanted = false;
   ObservationOption observation;
 
@@ -42,49 +39,34 @@ struct RenderCommand {
   void run_on_ranks(Ranks& ranks);
 
  private:
-  void require_writable_outputs() const;
   RenderRequest make_request() const;
-  void write_outputs(const RenderRequest& request, const RenderResult& result) const;
+  std::string choose_tree_for(const Scene& loaded, RenderOptions& of) const;
+  void write_image(const Film& film, const std::map<std::string, std::string>& provenance) const;
 };
-
-void RenderCommand::require_writable_outputs() const {
-  std::vector<OutputOption> outputs = observation.outputs();
-  outputs.insert(outputs.end(), {{"--exr", exr}, {"--png", png}, {"--stats", statistics}});
-  require_files_of_their_own(outputs);
-  for (const std::string& path : {exr, png, statistics})
-    if (!path.empty()) require_writable(path);
-}
-
-path_tracer::Program program_named(const std::string& name) {
-  using path_tracer::Program;
-  return name == "segments" ? Program::segments : name == "direct" ? Program::direct : Program::full;
-}
 
 RenderRequest RenderCommand::make_request() const {
   RenderRequest request{scene, options, native};
-  request.options.program.program = program_named(program);
   request.options.chip = chip.chip();
   request.options.timing = timing.style();
   request.options.level = level.level();
-  request.options.program.buffer_loads = buffer == "both" || buffer == "loads";
-  request.options.program.buffer_saves = buffer == "both" || buffer == "saves";
-  request.options.program.cull_shadow_rays = shadow_rays == "facing";
   if (native && request.options.timing == model::TimingStyle::approximately_timed)
     throw InputError("--timing: found at with --native, a native run has no clock; allowed is lt");
   if (native && observation.any())
     throw InputError(
-        "--waves, --transactions, --timeline: a native run has no clock and so nothing to show; leave out "
+        "--waves, --transactions, --timeline: a native run has no clock and records no waves; leave out "
         "--native");
   request.options.observation = observation.options(request.options.chip);
   return request;
 }
 
-void RenderCommand::write_outputs(const RenderRequest& request, const RenderResult& result) const {
-  if (!exr.empty()) write_exr(exr, result.film, render_provenance(request, result));
-  if (!png.empty()) write_png(png, result.film);
-  if (!statistics.empty())
-    write_bytes_atomically(statistics, statistics_for_file(statistics, render_statistics(request, result)));
-  if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
+std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& of) const {
+  return choose_tree(loaded.triangles.size(), of.chip, firmware.given(), of.program);
+}
+
+void RenderCommand::write_image(const Film& film,
+                                const std::map<std::string, std::string>& provenance) const {
+  if (!outputs.path("--exr").empty()) write_exr(outputs.path("--exr"), film, provenance);
+  if (!outputs.path("--png").empty()) write_png(outputs.path("--png"), film);
 }
 
 /// Each rank renders its share of the samples on a machine of its own.
@@ -96,9 +78,9 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
     request = make_request();
     if (observation.any())
       throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
-    if (ranks.is_first()) require_writable_outputs();
+    if (ranks.is_first()) outputs.require_writable(observation.outputs());
     loaded = load_scene_for_film(scene, size);
-    request.traversal_reason = traversal.choose(*loaded, request.options.chip, request.options.program);
+    request.traversal_reason = choose_tree_for(*loaded, request.options);
   } catch (const InputError& wrong) {
     error = wrong.what();
   }
@@ -122,9 +104,8 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       {"csx600.ranks", std::to_string(ranks.size())},
       {"csx600.segments", std::to_string(render->segments)},
       {"csx600.image_sha256", render->film.sha256()}};
-  if (!exr.empty()) write_exr(exr, render->film, provenance);
-  if (!png.empty()) write_png(png, render->film);
-  if (!statistics.empty()) write_bytes_atomically(statistics, render->statistics.dump(2) + "\n");
+  write_image(render->film, provenance);
+  outputs.write("--stats", [&] { return render->statistics.dump(2) + "\n"; });
   std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments", loaded->name.c_str(),
               loaded->film.width, loaded->film.height, request.options.work.samples, ranks.size(),
               static_cast<unsigned long long>(render->segments));
@@ -137,10 +118,10 @@ void RenderCommand::run() {
   Ranks ranks;
   if (!ranks.alone()) return run_on_ranks(ranks);
   RenderRequest request = make_request();
-  require_writable_outputs();
+  outputs.require_writable(observation.outputs());
   require_writable(request.options.observation, request.options.chip);
   const Scene loaded = load_scene_for_film(scene, size);
-  request.traversal_reason = traversal.choose(loaded, request.options.chip, request.options.program);
+  request.traversal_reason = choose_tree_for(loaded, request.options);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
     ProgressBar bar(native ? "render (native)" : "render");
@@ -151,44 +132,23 @@ void RenderCommand::run() {
     return native ? render_natively(loaded, request.options, progress)
                   : render_on_chip(loaded, request.options, progress);
   }();
-  write_outputs(request, result);
+  write_image(result.film, render_provenance(request, result));
+  outputs.write("--stats", [&] {
+    return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
+  });
+  if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
   if (loaded.degenerate_triangles > 0)
     std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", scene.c_str(),
                  loaded.degenerate_triangles);
   std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
-              loaded.film.width, loaded.film.height, request.options.work.samples, program.c_str(),
-              request.options.program.n, buffer.c_str(),
+              loaded.film.width, loaded.film.height, request.options.work.samples,
+              name_of(request.options.program.program), request.options.program.n,
+              option_text(request.options.program, "buffer").c_str(),
               native ? "native" : request.options.chip.preset.c_str());
   std::fputs(render_table(request, result).c_str(), stdout);
-  if (exr.empty() && png.empty()) std::puts("  no image written: name one with --exr or --png");
+  if (outputs.path("--exr").empty() && outputs.path("--png").empty())
+    std::puts("  no image written: name one with --exr or --png");
   require_observed(result);
-}
-
-void add_firmware_options(CLI::App& command, RenderCommand& state) {
-  path_tracer::ProgramConfig& program = state.options.program;
-  command.add_option("--program", state.program, "What is timed: segments, direct or full")
-      ->check(CLI::IsMember({"segments", "direct", "full"}))
-      ->capture_default_str();
-  command.add_option("--n", program.n, "Blocks loaded ahead and saved behind, 0 to 8")->capture_default_str();
-  command.add_option("--buffer", state.buffer, "What is n-buffered: loads, saves, both or none")
-      ->check(CLI::IsMember({"loads", "saves", "both", "none"}))
-      ->capture_default_str();
-  command
-      .add_option("--shadow-rays", state.shadow_rays,
-                  "Cast them only where light and surface face each other, or all: facing or all")
-      ->check(CLI::IsMember({"facing", "all"}))
-      ->capture_default_str();
-  command.add_option("--bin-blocks", program.bin_blocks, "Length of each bin in blocks of one SIMD width")
-      ->capture_default_str();
-  command.add_option("--slot-vertices", program.slot_vertices, "Vertices that a path slot holds")
-      ->capture_default_str();
-  command
-      .add_option(
-          "--pixel-stride", program.pixel_stride,
-          "Pixels from one camera ray to the next: 1 in order, more to shuffle; the image is the same")
-      ->capture_default_str();
-  add_sampling_options(command, program);
-  state.traversal.add_to(command, program);
 }
 
 }  // namespace
@@ -197,23 +157,24 @@ void add_render_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("render", "Render a scene with the firmware on the chip");
   const auto state = std::make_shared<RenderCommand>();
   state->options.work.samples = 16;
-  choose_best_sampling(state->options.program);
-  command.add_option("scene", state->scene, "Directory with a scene.toml, or a .toml file")->required();
-  command.add_option("--samples", state->options.work.samples, "Paths a pixel")
-      ->check(CLI::Range(1, 1 << 30))
+  state->options.program = path_tracer::default_program();
+  add_scene_argument(command, state->scene);
+  in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 1, 1 << 30)
       ->capture_default_str();
-  command.add_option("--size", state->size, "Film in pixels, WIDTHxHEIGHT (default: the scene's)");
-  add_firmware_options(command, *state);
+  add_size_option(command, state->size);
   state->chip.add_to(command, "csx600");
   state->timing.add_to(command);
   state->level.add_to(command);
   command.add_flag("--native", state->native, "Run the firmware without SystemC: same image, no time");
   add_check_hazards_flag(command, state->options.check_hazards);
-  command.add_option("--exr", state->exr, "Write the image as OpenEXR");
-  command.add_option("--png", state->png, "Write the image as PNG");
-  command.add_option("--stats,--json", state->statistics,
-                     "Write statistics: as CSV or text to a .csv or .txt file, otherwise as JSON");
+  state->outputs.add_to(command, "--exr", "Write the image as OpenEXR");
+  state->outputs.add_to(command, "--png", "Write the image as PNG");
+  state->outputs.add_to(command, "--stats,--json",
+                        "Write statistics: as CSV or text to a .csv or .txt file, otherwise as JSON");
   command.add_flag("--stats-text", state->statistics_text_wanted, "Print the statistics");
+  using path_tracer::OptionGroup;
+  state->firmware.add_to(command, state->options.program,
+                         {OptionGroup::bins, OptionGroup::sampling, OptionGroup::tree});
   state->observation.add_to(command);
   command.callback([state] { state->run(); });
 }

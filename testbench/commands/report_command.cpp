@@ -25,9 +25,13 @@ struct ReportCommand {
 void add_report_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("report", "Show a run or a sweep as one page for a browser");
   const auto state = std::make_shared<ReportCommand>();
-  command.add_option("input", state->input, "Statistics file of a run, or directory of a sweep")->required();
-  command.add_option("--image", state->image, "PNG of the run to show");
-  command.add_option("-o,--output", state->output, "HTML file to write")->capture_default_str();
+  command.add_option("input", state->input, "Statistics file of a run, or directory of a sweep")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--image", state->image, "PNG of the run to show")->type_name("FILE");
+  command.add_option("-o,--output", state->output, "HTML file to write")
+      ->type_name("FILE")
+      ->capture_default_str();
   command.callback([state] { state->run(); });
 }
 

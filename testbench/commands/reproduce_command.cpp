@@ -3,11 +3,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/paper/paper_runs.hpp"
 #include "testbench/scene/scene_file.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
@@ -32,7 +33,7 @@ struct ReproduceCommand {
   bool check_hazards = false;
   int jobs = 1;
   bool image = false;
-  std::string json;
+  OutputFiles outputs;
 
   void run() const;
 
@@ -54,7 +55,7 @@ std::vector<Cell> ReproduceCommand::measure(const Scene& loaded, const RenderOpt
 void print_table(int table, const char* title, const std::vector<Cell>& cells) {
   std::printf("Table %d: %s, seconds for 1,000,000 path segments\n", table, title);
   std::printf("  %-8s", "");
-  for (const Program program : kPaperPrograms) std::printf("  %-26s", program_name(program));
+  for (const Program program : kPaperPrograms) std::printf("  %-26s", name_of(program));
   std::printf("\n  %-8s", "");
   for (std::size_t i = 0; i < kPaperPrograms.size(); ++i)
     std::printf("  %7s %7s %9s ", "model", "paper", "error");
@@ -101,7 +102,7 @@ void ReproduceCommand::measure_image(const Scene& loaded, RenderOptions options)
   const double seconds = result.chip->seconds() * kPaperImageSegments / double(result.counts.segments);
   std::printf(
       "Image of 480 x 480 with 1000 segments a pixel: %.2f s, paper %.2f s, error %+.1f %%\n"
-      "  (%d samples a pixel, %.1f M segments, host %.1f s CPU: %.1f times faster than the silicon)\n",
+      "  (%d samples a pixel, %.1f M segments, simulator %.1f s CPU: %.1f times faster than the silicon)\n",
       seconds, kPaperImageSeconds, 100 * (seconds / kPaperImageSeconds - 1), options.work.samples,
       double(result.counts.segments) / 1e6, result.cpu_seconds,
       double(result.counts.segments) / result.cpu_seconds / (kPaperImageSegments / kPaperImageSeconds));
@@ -117,7 +118,7 @@ Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
     const PaperRow& row = paper_rows()[cell.of.row];
     json["cells"].push_back({{"table", row.table},
                              {"row", row.label},
-                             {"program", program_name(cell.of.program)},
+                             {"program", name_of(cell.of.program)},
                              {"model_seconds", cell.model_seconds},
                              {"paper_seconds", cell.of.seconds()},
                              {"error_percent", cell.error_percent()},
@@ -138,7 +139,7 @@ RenderOptions ReproduceCommand::make_options() const {
 }
 
 void ReproduceCommand::run() const {
-  if (!json.empty()) require_writable(json);
+  outputs.require_writable();
   const RenderOptions options = make_options();
   const Scene loaded = load_scene(scene);
   if (image) {
@@ -153,7 +154,7 @@ void ReproduceCommand::run() const {
   print_table(2, "what is buffered, n = 1", cells);
   std::printf("\n");
   print_summary(cells);
-  if (!json.empty()) write_bytes_atomically(json, to_json(cells, options).dump(2) + "\n");
+  outputs.write("--json", [&] { return to_json(cells, options).dump(2) + "\n"; });
 }
 
 }  // namespace
@@ -162,7 +163,7 @@ void add_reproduce_command(CLI::App& app) {
   CLI::App& command =
       *app.add_subcommand("reproduce", "Run the paper's Tables 1 and 2 and print both side by side");
   const auto state = std::make_shared<ReproduceCommand>();
-  command.add_option("scene", state->scene, "Scene to run")->capture_default_str();
+  add_scene_argument(command, state->scene);
   state->chip.add_to(command, "paper");
   state->timing.add_to(command);
   state->level.add_to(command);
@@ -170,7 +171,7 @@ void add_reproduce_command(CLI::App& app) {
   add_jobs_option(command, state->jobs);
   command.add_flag("--image", state->image, "Render the paper's image instead and compare its time");
   add_check_hazards_flag(command, state->check_hazards);
-  command.add_option("--json", state->json, "Also write the cells to this file");
+  state->outputs.add_to(command, "--json", "Also write the cells to this file");
   command.callback([state] { state->run(); });
 }
 

@@ -29,11 +29,11 @@ void add_scene_command(CLI::App& app) {
   const auto state = std::make_shared<SceneCommand>();
   std::map<std::string, GeneratedScene> kinds;
   for (const GeneratedScene kind : kGeneratedScenes) kinds[name_of(kind)] = kind;
-  command.add_option("kind", state->kind, "What it shows")->required()->transform(named_values(kinds));
-  command.add_option("--triangles", state->triangles, "About how many")
-      ->check(CLI::Range(kLeastGeneratedTriangles, kMostGeneratedTriangles))
+  one_of(command.add_option("kind", state->kind, "What it shows"), kinds)->required();
+  in_range(command.add_option("--triangles", state->triangles, "About how many"), kLeastGeneratedTriangles,
+           kMostGeneratedTriangles)
       ->capture_default_str();
-  command.add_option("-o,--output", state->output, "Directory to write")->required();
+  command.add_option("-o,--output", state->output, "Directory to write")->type_name("DIRECTORY")->required();
   command.callback([state] { state->run(); });
 }
 

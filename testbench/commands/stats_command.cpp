@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/statistics_file.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -12,7 +12,7 @@ namespace {
 
 struct StatsCommand {
   std::string file;
-  std::string output;
+  OutputFiles outputs;
   bool describe = false;
 
   void run() const {
@@ -23,13 +23,11 @@ struct StatsCommand {
       std::fputs(describe_counters().c_str(), stdout);
       return;
     }
-    if (!output.empty()) require_writable(output);
+    outputs.require_writable();
+    const std::string& output = outputs.path("--output");
     const nlohmann::ordered_json statistics = read_statistics(file);
-    if (output.empty()) {
-      std::fputs(statistics_text(statistics).c_str(), stdout);
-    } else {
-      write_bytes_atomically(output, statistics_for_file(output, statistics));
-    }
+    if (output.empty()) std::fputs(statistics_text(statistics).c_str(), stdout);
+    outputs.write("--output", [&] { return statistics_for_file(output, statistics); });
   }
 };
 
@@ -38,9 +36,10 @@ struct StatsCommand {
 void add_stats_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("stats", "Print a run's statistics, or what they mean");
   const auto state = std::make_shared<StatsCommand>();
-  command.add_option("file", state->file, "Statistics that render --stats has written as JSON");
+  command.add_option("file", state->file, "Statistics that render --stats has written as JSON")
+      ->type_name("FILE");
   command.add_flag("--describe", state->describe, "Print name, unit and meaning of every counter instead");
-  command.add_option("-o,--output", state->output, "Write them to this .csv, .txt or .json file instead");
+  state->outputs.add_to(command, "-o,--output", "Write them to this .csv, .txt or .json file instead");
   command.callback([state] { state->run(); });
 }
 

@@ -161,14 +161,17 @@ void add_sweep_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand(
       "sweep", "Run every combination of parameters of a sweep file; a sweep that was stopped goes on");
   const auto state = std::make_shared<SweepCommand>();
-  command.add_option("file", state->file, "TOML file with base values and axes")->required();
-  command.add_option(
-      "-o,--output", state->output,
-      "Directory for sweep.csv, sweep.json and points.jsonl (default: the file's name with .sweep)");
+  command.add_option("file", state->file, "TOML file with base values and axes")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("-o,--output", state->output, "Directory for sweep.csv, sweep.json and points.jsonl")
+      ->type_name("DIRECTORY")
+      ->default_str("the file's name with .sweep");
   command.add_option("--set", state->settings, "One base value, key=value; may be repeated")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   add_jobs_option(command, state->jobs);
-  command.add_flag("--full", state->in_full, "Replay nothing: run every point in full");
+  command.add_flag("--full", state->in_full, "Run every point in full instead of replaying streams");
   command.add_flag("--retry-failed", state->retry_failed, "Run points again that failed");
   state->jobs_option = command.get_option("--jobs");
   command.callback([state] { state->run(); });

@@ -4,7 +4,7 @@
 
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/system/progress_bar.hpp"
 #include "testbench/validation/validation.hpp"
 
@@ -15,12 +15,10 @@ struct ValidateCommand {
   SetOptions settings;
   LevelOption level;
   int jobs = 1;
-  std::string json;
-  std::string csv;
+  OutputFiles outputs;
 
   void run() const {
-    if (!json.empty()) require_writable(json);
-    if (!csv.empty()) require_writable(csv);
+    outputs.require_writable();
     ValidationOptions options;
     options.chip = [this](const std::string& preset) { return settings.chip(preset); };
     options.level = level.level();
@@ -31,8 +29,8 @@ struct ValidateCommand {
       validation = validate(options, [&](double share) { bar.show(share); });
     }
     std::fputs(validation_text(validation).c_str(), stdout);
-    if (!json.empty()) write_bytes_atomically(json, to_json(validation).dump(2) + "\n");
-    if (!csv.empty()) write_bytes_atomically(csv, validation_csv(validation));
+    outputs.write("--json", [&] { return to_json(validation).dump(2) + "\n"; });
+    outputs.write("--csv", [&] { return validation_csv(validation); });
   }
 };
 
@@ -46,8 +44,8 @@ void add_validate_command(CLI::App& app) {
   state->settings.add_to(command);
   state->level.add_to(command);
   add_jobs_option(command, state->jobs);
-  command.add_option("--json", state->json, "Also write figures, cycles and bandwidths to this file");
-  command.add_option("--csv", state->csv, "Also write the figures to this file");
+  state->outputs.add_to(command, "--json", "Also write figures, cycles and bandwidths to this file");
+  state->outputs.add_to(command, "--csv", "Also write the figures to this file");
   command.callback([state] { state->run(); });
 }
 

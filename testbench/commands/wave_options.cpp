@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "testbench/commands/named_values.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -24,7 +25,7 @@ std::optional<Number> whole_number(const std::string& text) {
   return value;
 }
 
-/// "first:last" as a pair; nothing without a colon.
+/// "first:last" as a pair; none without a colon.
 std::optional<std::pair<std::string, std::string>> split(const std::string& text, char separator) {
   const std::size_t place = text.find(separator);
   if (place == std::string::npos) return std::nullopt;
@@ -92,19 +93,6 @@ std::vector<int> pes_of(const std::string& text, int pes) {
   return list;
 }
 
-model::WaveLevel level_named(const std::string& name) {
-  int level = 0;
-  while (name != model::wave_level_name(static_cast<model::WaveLevel>(level))) ++level;
-  return static_cast<model::WaveLevel>(level);
-}
-
-std::vector<std::string> level_names() {
-  std::vector<std::string> names;
-  for (int level = 0; level < model::kWaveLevels; ++level)
-    names.emplace_back(model::wave_level_name(static_cast<model::WaveLevel>(level)));
-  return names;
-}
-
 }  // namespace
 
 void ObservationOption::add_to(CLI::App& command) {
@@ -112,37 +100,46 @@ void ObservationOption::add_to(CLI::App& command) {
   command
       .add_option("--waves", waves_,
                   "Write waves (.vcd, or .fst by way of vcd2fst) and a GTKWave view beside them (.gtkw)")
+      ->type_name("FILE")
       ->group(group);
   command
       .add_option("--waves-signals", signals_,
                   "Signals to show, a shell pattern on names as `csx600 waves` lists them; may be repeated")
+      ->type_name("PATTERN")
       ->allow_extra_args(false)
       ->group(group);
-  command
-      .add_option("--waves-level", level_,
-                  "How much to show: overview, units or detail (default: units; detail with --waves-signals)")
-      ->check(CLI::IsMember(level_names()))
+  std::map<std::string, model::WaveLevel> levels;
+  for (int level = 0; level < model::kWaveLevels; ++level)
+    levels[model::wave_level_name(static_cast<model::WaveLevel>(level))] =
+        static_cast<model::WaveLevel>(level);
+  one_of(command.add_option("--waves-level", level_, "How much to show"), levels)
+      ->default_str("units; detail with --waves-signals")
       ->group(group);
-  command.add_option("--waves-pes", pes_, "PEs to show one by one, as in 0,5,90-95")->group(group);
+  command.add_option("--waves-pes", pes_, "PEs to show one by one, as in 0,5,90-95")
+      ->type_name("PES")
+      ->group(group);
   command
       .add_option("--waves-window", windows_,
-                  "Part of the run to show, FIRST:LAST in cycles or times (8.1ms:9ms); may be repeated "
-                  "(default: all)")
+                  "Part of the run to show, in cycles or times (8.1ms:9ms); may be repeated")
+      ->type_name("FIRST:LAST")
+      ->default_str("all")
       ->allow_extra_args(false)
       ->group(group);
   command
-      .add_option(
-          "--waves-blocks", blocks_,
-          "Part of the run to show, from the FIRST-th block on, FIRST or FIRST:COUNT; may be repeated")
+      .add_option("--waves-blocks", blocks_,
+                  "Part of the run to show, from the FIRST-th block on; may be repeated")
+      ->type_name("FIRST[:COUNT]")
       ->allow_extra_args(false)
       ->group(group);
   command
       .add_option("--transactions", transactions_,
                   "Write a line of JSON for each PIO request and host transfer")
+      ->type_name("FILE")
       ->group(group);
   command
       .add_option("--timeline", timeline_,
                   "Write kernels, waits and transfers as trace events (JSON) for Perfetto or about:tracing")
+      ->type_name("FILE")
       ->group(group);
 }
 
@@ -153,7 +150,7 @@ std::vector<OutputOption> ObservationOption::outputs() const {
 void ObservationOption::require_waves() const {
   if (!waves_.empty()) return;
   const std::pair<const char*, bool> selecting[] = {{"--waves-signals", !signals_.empty()},
-                                                    {"--waves-level", !level_.empty()},
+                                                    {"--waves-level", level_.has_value()},
                                                     {"--waves-pes", !pes_.empty()},
                                                     {"--waves-window", !windows_.empty()},
                                                     {"--waves-blocks", !blocks_.empty()}};
@@ -164,7 +161,7 @@ void ObservationOption::require_waves() const {
 WaveOptions ObservationOption::wave_options(const model::ChipConfig& chip) const {
   WaveOptions waves{waves_, {}};
   waves.config.selection.globs = signals_;
-  if (!level_.empty()) waves.config.selection.level = level_named(level_);
+  if (level_) waves.config.selection.level = *level_;
   if (!pes_.empty()) waves.config.selection.pes = pes_of(pes_, chip.chip.pes);
   for (const std::string& text : windows_)
     waves.config.windows.push_back(window_of(text, chip.chip.clock_hz));

@@ -23,12 +23,12 @@ namespace fs = std::filesystem;
 bool is_kept(const std::string& key) {
   if (key == "image_sha256") return true;
   const Counter* const counter = find_counter(key);
-  return counter != nullptr && counter->kind == CounterKind::counted && group_of(key) != "host";
+  return counter != nullptr && counter->kind == CounterKind::counted && group_of(key) != kSimulatorSection;
 }
 
 FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
   RenderOptions options = run.options;
-  fit_tree(scene.triangles.size(), options.chip, run.tree, options.program);
+  choose_tree(scene.triangles.size(), options.chip, run.given, options.program);
   const RenderResult result = render_on_chip(scene, options);
   FlatStatistics kept;
   for (auto& value : flatten(render_statistics({run.scene, options, false}, result)))
@@ -107,7 +107,7 @@ std::string table_csv(const GoldenTable& table) {
 /// How one counter moved over the runs.
 struct Move {
   int runs = 0;
-  std::optional<double> least;     ///< relative difference; nothing where a value is missing or no number
+  std::optional<double> least;     ///< relative difference; none where a value is missing or no number
   std::optional<double> greatest;  ///< likewise
   Difference first;
   std::string first_run;

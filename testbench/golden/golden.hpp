@@ -18,7 +18,7 @@ struct GoldenRun {
   std::string name;   ///< its column: "full n1 both lt"
   std::string scene;  ///< path of its directory
   RenderOptions options;
-  TreeWishes tree;  ///< the rest is chosen as `csx600 render` does
+  GivenOptions given;  ///< options of the firmware that are not chosen as `csx600 render` does
 };
 
 /// The runs that DIRECTORY/grid.toml asks for:
@@ -26,27 +26,24 @@ struct GoldenRun {
 ///     width = 12               of the films
 ///     height = 8
 ///     samples = 2              a pixel
-///     [[grid]]                 all combinations of
-///     scenes = ["../../scenes/cornell_box"]    relative to grid.toml
-///     chips = ["csx600"]                       presets
-///     programs = ["segments", "direct", "full"]
-///     n = [0, 1]
-///     buffers = ["both"]                       loads, saves, both or none
-///     timings = ["lt"]                         lt or at
-///     traversals = ["refill"]                  may be left out: brute_force
-///     node_formats = ["fp32"]                  may be left out, of trees only
-///     node_widths = [4]                        likewise
+///     [[grid]]                 all combinations of lists, by any key of a sweep (run_settings.hpp)
+///     scene = ["../../scenes/cornell_box"]    relative to grid.toml
+///     chip = ["csx600"]                       presets
+///     firmware.program = ["segments", "direct", "full"]
+///     firmware.n = [0, 1]
+///     timing = ["lt"]
+///     firmware.traversal = ["refill"]         brute_force if left out; node_format and node_width likewise
+///     firmware.node_format = ["fp32"]         have their defaults
 ///
-/// `program` gives all that the grid does not. Throws InputError.
+/// Other options of a tree are chosen as `csx600 render` does. Throws InputError.
 struct GoldenGrid {
   FilmSize film;
   std::vector<GoldenRun> runs;
 };
-GoldenGrid read_golden_grid(const std::filesystem::path& directory,
-                            const path_tracer::ProgramConfig& program);
+GoldenGrid read_golden_grid(const std::filesystem::path& directory);
 
-/// What is kept of each run, by file and name: the counters (CounterKind::counted), without the host's, and
-/// the image's hash.
+/// What is kept of each run, by file and name: the counters (CounterKind::counted) without the simulator's,
+/// and the image's hash.
 using GoldenTable = std::vector<std::pair<std::string, FlatStatistics>>;
 using GoldenTables = std::map<std::string, GoldenTable>;
 
@@ -58,7 +55,7 @@ GoldenTables read_golden(const std::filesystem::path& directory);
 /// Writes the tables and removes .csv files of others. One row a counter, one column a run.
 void write_golden(const std::filesystem::path& directory, const GoldenTables& tables);
 
-/// What moved from `kept` to `found`: by counter, in how many runs and how far. "" when nothing did.
+/// What moved from `kept` to `found`: by counter, in how many runs and how far. "" when no counter did.
 std::string golden_moves(const GoldenTables& kept, const GoldenTables& found);
 
 }  // namespace testbench

@@ -1,56 +1,39 @@
-#include <toml++/toml.h>
-
 #include <algorithm>
-#include <array>
+#include <map>
 #include <set>
 
-#include "model/config/chip_file.hpp"
 #include "testbench/golden/golden.hpp"
-#include "testbench/run/program_names.hpp"
+#include "testbench/run/run_settings.hpp"
+#include "testbench/run/timing_name.hpp"
+#include "testbench/run/toml_settings.hpp"
+#include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {
 
 namespace fs = std::filesystem;
+using Settings = std::vector<Setting>;
 
-constexpr std::array kPrograms = {path_tracer::Program::segments, path_tracer::Program::direct,
-                                  path_tracer::Program::full};
+constexpr const char* kFirmware = "firmware.";
 
-[[noreturn]] void refuse(const std::string& file, const std::string& key, const std::string& found,
-                         const std::string& allowed) {
-  throw InputError(file + ": " + key + ": found " + found + ", allowed is " + allowed);
-}
-
-/// One run, in the words of the grid.
-struct RunKeys {
-  std::string scene;
-  std::string chip;
-  std::string program;
-  std::int64_t n = 0;
-  std::string buffer;
-  std::string timing;
-  std::string traversal;
-  std::string node_format;
-  std::int64_t node_width = 0;
-};
-
-/// Each of the runs with each of the values.
-template <class T>
-void multiply(std::vector<RunKeys>& runs, T RunKeys::*key, const std::vector<T>& values) {
-  std::vector<RunKeys> product;
-  for (const RunKeys& run : runs)
-    for (const T& value : values) {
-      product.push_back(run);
-      product.back().*key = value;
-    }
-  runs = std::move(product);
+/// Keys of earlier grids, and the settings that they are called now.
+const std::map<std::string, std::string>& old_keys() {
+  static const std::map<std::string, std::string> keys = {{"scenes", "scene"},
+                                                          {"chips", "chip"},
+                                                          {"timings", "timing"},
+                                                          {"programs", "firmware.program"},
+                                                          {"n", "firmware.n"},
+                                                          {"buffers", "firmware.buffer"},
+                                                          {"traversals", "firmware.traversal"},
+                                                          {"node_formats", "firmware.node_format"},
+                                                          {"node_widths", "firmware.node_width"}};
+  return keys;
 }
 
 class GridReader {
  public:
-  GridReader(const fs::path& directory, const path_tracer::ProgramConfig& program)
-      : directory_(directory), file_(directory / "grid.toml"), program_(program) {}
+  explicit GridReader(const fs::path& directory) : directory_(directory), file_(directory / "grid.toml") {}
 
   GoldenGrid read() {
     toml::table table;
@@ -59,22 +42,26 @@ class GridReader {
     } catch (const toml::parse_error& error) {
       throw InputError(file_ + ": cannot be read as TOML: " + std::string(error.description()));
     }
-    only(table, {"width", "height", "samples", "grid"});
+    for (const auto& [key, node] : table)
+      if (static const std::set<std::string_view> known = {"width", "height", "samples", "grid"};
+          known.count(key.str()) == 0)
+        refuse(line_of(file_, node), std::string(key.str()), "an unknown key",
+               "width, height, samples and [[grid]]");
     GoldenGrid grid;
     grid.film = {positive(table, "width"), positive(table, "height")};
     samples_ = positive(table, "samples");
     const toml::array* const grids = table["grid"].as_array();
     if (grids == nullptr || !grids->is_array_of_tables())
       refuse(file_, "grid", "none", "one [[grid]] or more");
-    for (const toml::node& node : *grids) add_product(*node.as_table(), grid);
+    for (const toml::node& node : *grids)
+      for (const Settings& settings : product(*node.as_table())) add(make_run(settings), grid);
     return grid;
   }
 
  private:
-  void only(const toml::table& table, const std::set<std::string_view>& allowed) const {
-    for (const auto& [key, node] : table)
-      if (allowed.count(key.str()) == 0)
-        refuse(file_, std::string(key.str()), "an unknown key", "one of those that the README lists");
+  [[noreturn]] static void refuse(const std::string& origin, const std::string& key, const std::string& found,
+                                  const std::string& allowed) {
+    throw InputError(origin + ": " + key + ": found " + found + ", allowed is " + allowed);
   }
 
   int positive(const toml::table& table, const char* key) const {
@@ -86,114 +73,108 @@ class GridReader {
     return int(*value);
   }
 
-  template <class T>
-  std::vector<T> list(const toml::table& table, const char* key) const {
-    std::vector<T> values;
-    if (const toml::array* const array = table[key].as_array())
-      for (const toml::node& node : *array)
-        if (const auto value = node.value_exact<T>()) values.push_back(*value);
-    const toml::array* const array = table[key].as_array();
-    if (values.empty() || values.size() != array->size())
-      refuse(file_, key, "no list or one with other values", "a list of strings, or of integers for n");
-    return values;
-  }
-  template <class T>
-  std::vector<T> list_of(const toml::table& table, const char* key, const std::vector<T>& allowed) const {
-    std::vector<T> values = list<T>(table, key);
-    for (const T& value : values)
-      if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
-        refuse(file_, key, word(value), "one of " + words(allowed));
-    return values;
-  }
-  /// Of a key that may be left out.
-  template <class T>
-  std::vector<T> list_or(const T& otherwise, const toml::table& table, const char* key,
-                         const std::vector<T>& allowed) const {
-    return table.contains(key) ? list_of(table, key, allowed) : std::vector<T>{otherwise};
+  /// One setting for each value of a key's list.
+  Settings settings_of(const TomlLeaf& leaf) const {
+    const std::string origin = line_of(file_, *leaf.node);
+    if (const auto old = old_keys().find(leaf.key); old != old_keys().end())
+      refuse(origin, leaf.key, "a name that is no longer used", old->second);
+    if (!is_setting(leaf.key)) require_current_key(origin, leaf.key);
+    if (leaf.key == "size" || leaf.key == "samples")
+      refuse(origin, leaf.key, "it in a [[grid]]", "width, height and samples of the whole file, above");
+    const toml::array* const array = leaf.node->as_array();
+    if (array == nullptr || array->empty())
+      refuse(origin, leaf.key, array == nullptr ? found_text(*leaf.node) : "an empty list",
+             "a list of values");
+    Settings settings;
+    for (const toml::node& node : *array) {
+      const std::optional<std::string> value = scalar_text(node);
+      if (!value) refuse(origin, leaf.key, found_text(node) + " in a list", "values");
+      const bool names_file =
+          leaf.key == "scene" || (leaf.key == "chip" && fs::path(*value).extension() == ".toml");
+      settings.push_back({leaf.key, names_file ? path_of(*value) : *value, origin});
+      require_allowed(settings.back());
+    }
+    return settings;
   }
 
-  static std::string word(const std::string& value) { return value; }
-  static std::string word(std::int64_t value) { return std::to_string(value); }
-  template <class T>
-  static std::string words(const std::vector<T>& values) {
-    std::string joined;
-    for (const T& value : values) joined += (joined.empty() ? "" : ", ") + word(value);
-    return joined;
+  std::string path_of(const std::string& file) const {
+    return (directory_ / file).lexically_normal().string();
   }
 
-  /// Once: products may overlap.
+  /// All combinations; the last key of the file changes fastest.
+  std::vector<Settings> product(const toml::table& table) const {
+    std::vector<Settings> runs(1);
+    for (const TomlLeaf& leaf : leaves_of(table)) {
+      std::vector<Settings> longer;
+      for (const Settings& run : runs)
+        for (const Setting& setting : settings_of(leaf)) {
+          longer.push_back(run);
+          longer.back().push_back(setting);
+        }
+      runs = std::move(longer);
+    }
+    for (const Settings& run : runs)
+      if (std::none_of(run.begin(), run.end(), [](const Setting& setting) { return setting.key == "scene"; }))
+        refuse(line_of(file_, table), "scene", "none", "a list of scenes");
+    return runs;
+  }
+
+  /// Adds a run once: products may overlap.
   static void add(GoldenRun&& run, GoldenGrid& grid) {
     for (const GoldenRun& known : grid.runs)
       if (known.file == run.file && known.name == run.name) return;
     grid.runs.push_back(std::move(run));
   }
 
-  void add_product(const toml::table& table, GoldenGrid& grid) const {
-    only(table, {"scenes", "chips", "programs", "n", "buffers", "timings", "traversals", "node_formats",
-                 "node_widths"});
-    using Words = std::vector<std::string>;
-    const std::vector<std::int64_t> widths(std::begin(path_tracer::kNodeWidth),
-                                           std::end(path_tracer::kNodeWidth));
-    const path_tracer::NodeLayout& layout = program_.tree.layout;
-    std::vector<RunKeys> runs(1);
-    multiply(runs, &RunKeys::scene, list<std::string>(table, "scenes"));
-    multiply(runs, &RunKeys::chip, list<std::string>(table, "chips"));
-    multiply(runs, &RunKeys::program, list_of(table, "programs", Words{"direct", "full", "segments"}));
-    multiply(runs, &RunKeys::n, list<std::int64_t>(table, "n"));
-    multiply(runs, &RunKeys::buffer, list_of(table, "buffers", Words{"both", "loads", "none", "saves"}));
-    multiply(runs, &RunKeys::timing, list_of(table, "timings", Words{"at", "lt"}));
-    multiply(
-        runs, &RunKeys::traversal,
-        list_or(traversal_name(path_tracer::Traversal::brute_force), table, "traversals", traversal_names()));
-    multiply(runs, &RunKeys::node_format,
-             list_or(node_format_name(layout.format), table, "node_formats", node_format_names()));
-    multiply(runs, &RunKeys::node_width, list_or(std::int64_t{layout.width}, table, "node_widths", widths));
-    for (const RunKeys& keys : runs) add(run(keys), grid);
-  }
-
-  GoldenRun run(const RunKeys& keys) const {
-    const fs::path path = (directory_ / keys.scene).lexically_normal();
-    GoldenRun run;
-    run.scene = path;
-    run.file = path.filename().string() + "-" + keys.chip + ".csv";
-    run.name = keys.program + " n" + std::to_string(keys.n) + " " + keys.buffer + " " + keys.timing;
+  RunSettings with_origin(const Settings& settings) const {
     try {
-      run.options.chip = model::load_chip(keys.chip);
-    } catch (const model::ConfigError& error) {
+      return make_settings(settings);
+    } catch (const InputError& error) {  // values that do not fit each other
       throw InputError(file_ + ": " + error.what());
     }
+  }
+
+  GoldenRun make_run(const Settings& settings) const {
+    const RunSettings made = with_origin(settings);
+    GoldenRun run;
+    run.scene = made.scene;
+    run.options = made.options;
     run.options.work.samples = samples_;
-    run.options.program = program_;
-    for (const path_tracer::Program one : kPrograms)
-      if (program_name(one) == keys.program) run.options.program.program = one;
-    run.options.program.n = int(keys.n);
-    run.options.program.buffer_loads = keys.buffer == "both" || keys.buffer == "loads";
-    run.options.program.buffer_saves = keys.buffer == "both" || keys.buffer == "saves";
-    run.options.timing =
-        keys.timing == "at" ? model::TimingStyle::approximately_timed : model::TimingStyle::loosely_timed;
-    run.options.program.traversal = traversals_by_name().at(keys.traversal);
-    if (run.options.program.uses_tree()) set_tree(keys, run);
+    // A golden run says how rays find triangles: what suits them best may change, its counters must not.
+    run.given = {"traversal", "node_format", "node_width"};
+    for (const Setting& setting : settings)
+      if (setting.key.rfind(kFirmware, 0) == 0) run.given.insert(setting.key.substr(9));
+    run.file = fs::path(made.scene).filename().string() + "-" + fs::path(made.chip).stem().string() + ".csv";
+    run.name = name_of_run(made, settings);
     return run;
   }
 
-  static void set_tree(const RunKeys& keys, GoldenRun& run) {
-    run.name += " " + keys.traversal + " " + keys.node_format + " " + std::to_string(keys.node_width);
-    path_tracer::TreeShape& tree = run.options.program.tree;
-    tree.resident_nodes = kAsManyAsFit;
-    run.tree.node_format = node_formats_by_name().at(keys.node_format);
-    run.tree.node_width = int(keys.node_width);
+  /// "full n1 both lt", with a tree "full n1 both lt refill fp32 4"; then what else the grid sets.
+  static std::string name_of_run(const RunSettings& run, const Settings& settings) {
+    std::set<std::string> said = {"scene", "chip"};
+    const auto say = [&](const std::string& key) {
+      said.insert(key);
+      return value_of(run, key);
+    };
+    std::string name = say("firmware.program") + " n" + say("firmware.n") + " " + say("firmware.buffer") +
+                       " " + say("timing");
+    const std::string tree = " " + say("firmware.traversal") + " " + say("firmware.node_format") + " " +
+                             say("firmware.node_width");
+    if (run.options.program.uses_tree()) name += tree;
+    for (const Setting& setting : settings)
+      if (said.count(setting.key) == 0) name += " " + setting.key + "=" + setting.value;
+    return name;
   }
 
   fs::path directory_;
   std::string file_;
-  path_tracer::ProgramConfig program_;
   int samples_ = 0;
 };
 
 }  // namespace
 
-GoldenGrid read_golden_grid(const fs::path& directory, const path_tracer::ProgramConfig& program) {
-  return GridReader(directory, program).read();
+GoldenGrid read_golden_grid(const fs::path& directory) {
+  return GridReader(directory).read();
 }
 
 }  // namespace testbench

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/path_tracer/program/program_options.hpp"
+
 namespace testbench {
 namespace {
 
@@ -24,7 +26,7 @@ const std::vector<PaperRow>& paper_rows() {
 }
 
 std::string PaperCell::name() const {
-  return std::string(program_name(program)) + ", " + paper_rows()[row].label;
+  return std::string(name_of(program)) + ", " + paper_rows()[row].label;
 }
 
 path_tracer::ProgramConfig PaperCell::firmware(path_tracer::ProgramConfig base) const {

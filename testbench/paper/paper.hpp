@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "firmware/path_tracer/program/program.hpp"
-#include "testbench/run/program_names.hpp"
 
 namespace testbench {
 

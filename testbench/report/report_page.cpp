@@ -28,6 +28,7 @@ Json parse(const fs::path& path) {
   const std::string format = json.contains("format") && json["format"].is_string()
                                  ? json["format"].get<std::string>()
                                  : std::string("none");
+  if (format == "csx600-statistics-1") require_statistics_format(format, path.string());
   if (format != kStatisticsFormat && format != kSweepFormat)
     throw InputError(path.string() + ": format: found '" + format + "'; allowed: '" + kStatisticsFormat +
                      "', '" + kSweepFormat + "'");

@@ -8,13 +8,6 @@ const kCauses = {
   wait_host: "waiting for the host", thread_switch: "thread switches",
 };
 
-/// A number of the file's chip parameters, which it holds as TOML.
-function chipParameter(run, group, name) {
-  const part = run.chip_config.split(/^\[/m).find((text) => text.startsWith(`${group}]`)) || "";
-  const found = part.match(new RegExp(`^${name} = ([-+.0-9eE]+)`, "m"));
-  return found ? Number(found[1]) : NaN;
-}
-
 function showFigures(run, chip) {
   const figures = [
     [forPeople(run.rays / run.simulated_seconds), "rays/s"],
@@ -82,7 +75,7 @@ function roofline(run, chip) {
   }
   const clock = chip.clock_hz;
   const flops = chip.pes * chip.pe_array.kernels.reduce((sum, kernel) => sum + flopsOf(kernel) * kernel.simd_efficiency, 0);
-  const path = (name, bytes, group) => ({ name, peak: chipParameter(run, group, "bytes_per_cycle") * clock, intensity: flops / bytes });
+  const path = (name, bytes, group) => ({ name, peak: run.chip_config[group].bytes_per_cycle * clock, intensity: flops / bytes });
   return { flops: flops / run.simulated_seconds, peak: 2 * chip.pes * clock,
            paths: [path("pio", chip.pio.bytes_mono_to_poly + chip.pio.bytes_poly_to_mono, "pio"),
                    path("ddr", chip.ddr.bytes_read + chip.ddr.bytes_written, "ddr")] };

@@ -36,19 +36,19 @@ struct ChipStatistics {
   model::HostLinkStatistics host_link;
 
   double seconds() const { return double(firmware_cycles) / config.chip.clock_hz; }
-  /// With upload and download.
+  /// The same with upload and download.
   double total_seconds() const { return double(total_cycles) / config.chip.clock_hz; }
   /// Share of the run in which the PE array executed kernels.
   double pe_utilisation() const;
   double simd_efficiency() const { return all_kernels.simd_efficiency(config.chip.pes); }
-  /// Share of the run in which the control unit did nothing but wait for programmed I/O.
+  /// Share of the run in which the control unit only waited for programmed I/O.
   double exposed_pio_share() const;
   double ddr_bytes_per_second() const;
 };
 
 ChipStatistics collect_statistics(const model::Csx600& chip, model::Cycles total_cycles);
 
-/// By the declarations of counters.hpp.
+/// As counters.hpp declares the counters.
 nlohmann::ordered_json to_json(const ChipStatistics& statistics);
 nlohmann::ordered_json to_json(const path_tracer::RunCounts& counts);
 

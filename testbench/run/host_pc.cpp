@@ -41,7 +41,8 @@ void HostPc::fetch_results() {
   chip_.control_unit.host_semaphores().signal(HostSemaphores::kResultsFree);
 }
 
-/// For programs that are timed without radiance: their results are not part of the run.
+/// Fetches results without taking time: those of a program that is timed without radiance are no part of the
+/// run.
 void HostPc::fetch_untimed_results() {
   results_.fetch([this](cn::MonoAddress from, void* to, std::size_t bytes) {
     tlm::tlm_generic_payload transaction;

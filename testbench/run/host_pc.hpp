@@ -14,7 +14,7 @@ class HostPc : public sc_core::sc_module {
  public:
   HostPc(const sc_core::sc_module_name& name, model::Csx600& chip, const MonoImage& image, Film& film);
 
-  /// What the host fetches while the firmware runs is told to `checker`, which may be null.
+  /// Tells `checker`, which may be null, what the host fetches while the firmware runs.
   void report_reads_to(model::HazardChecker* checker) { checker_ = checker; }
 
   bool finished() const { return finished_; }

@@ -32,7 +32,7 @@ auto with_input_errors(Work&& work) {
   }
 }
 
-/// Keeps the count of paths and the wish to stop between the firmware and the caller.
+/// Tells the caller how far the firmware is, and the firmware whether the caller wants to stop.
 class ProgressRelay {
  public:
   ProgressRelay(const Scene& scene, const path_tracer::Work& work, const RenderProgress& progress)
@@ -98,8 +98,8 @@ class Run {
   }
 
  private:
-  /// The image of ten million triangles takes a minute; that their records alone are too many is known
-  /// before.
+  /// Building the image of ten million triangles takes a minute: a chip whose memory cannot hold even their
+  /// records is refused before.
   static void require_memory_for_triangles(const Scene& scene, const RenderOptions& options) {
     const int slots = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
     const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots};

@@ -39,7 +39,7 @@ struct RenderResult {
   double wall_seconds = 0;
 };
 
-/// Told the share of camera paths issued; returns false to interrupt the run.
+/// Takes the share of camera paths issued; returns false to interrupt the run.
 using RenderProgress = std::function<bool(double share)>;
 
 /// The firmware on the SystemC model. At most one a process, as SystemC elaborates once.

@@ -11,7 +11,7 @@ namespace testbench {
 struct PartialRender {
   Film film;
   std::uint64_t segments = 0;
-  double cpu_seconds = 0;                   ///< of rendering
+  double cpu_seconds = 0;                   ///< spent on rendering
   std::optional<double> simulated_seconds;  ///< of a run on the chip
 };
 

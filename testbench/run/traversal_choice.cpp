@@ -25,7 +25,7 @@ double cycles_of(const cn::IssueCounts& counts, const model::ChipConfig& chip) {
   return cycles * chip.poly.code_quality_factor;
 }
 
-/// What the intersect kernel issues for so many triangles.
+/// Cycles of the intersect kernel for so many triangles.
 double intersect_cycles(int triangles, const model::ChipConfig& chip) {
   constexpr int kPes = 8;
   cn::PolyMemory memory(kPes, 1024);
@@ -46,7 +46,8 @@ double intersect_cycles(int triangles, const model::ChipConfig& chip) {
   return cycles_of(issued.total(), chip);
 }
 
-/// Of a ray on its way through the tree, by the number of triangles: measured on `csx600 scene blob`.
+/// What a ray visits on its way through the tree, by the number of triangles: measured on `csx600 scene
+/// blob`.
 struct Visits {
   double leaves;
   double treelets;
@@ -57,11 +58,12 @@ Visits visits_of_a_ray(std::size_t triangles) {
   return {3.0, 0.25 * doublings, 4.1 + 0.28 * doublings};
 }
 
-/// What the kernels of a turn take, in tests of a triangle, and the share of PEs that have a ray; as above.
+/// The kernels of a turn take as long as so many triangle tests; the other constant is the share of PEs that
+/// have a ray. Both measured as above.
 constexpr double kTrianglesOfATurn = 28;
 constexpr double kOccupancy = 0.8;
 
-/// When the data cache does not hold all triangles from one block to the next.
+/// Cycles to fetch a triangle when the data cache does not hold all of them from one block to the next.
 double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
   const double lines = double(sizeof(path_tracer::TriangleRecord)) / chip.control.cache_line_bytes;
   return lines * (chip.control.cache_miss_cycles + chip.ddr.page_miss_cycles +
@@ -69,8 +71,8 @@ double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
                   double(chip.control.cache_line_bytes) / chip.clear_connect.bytes_per_cycle);
 }
 
-/// Of a PE's SRAM, beside everything else; below 0 if that does not fit. Where resident nodes are as many as
-/// fit, one is counted. Throws InputError for a program that the firmware refuses.
+/// Bytes of a PE's SRAM that the program leaves free; negative if it does not fit. Automatic resident nodes
+/// count as one. Throws InputError for a program that the firmware refuses.
 int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) try {
   ProgramConfig least = program;
   if (least.tree.resident_nodes == kAsManyAsFit) least.tree.resident_nodes = 1;
@@ -80,25 +82,25 @@ int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) try 
   const path_tracer::PathTracer sizes(machine, path_tracer::kernels(cn::widest_level()), least, layout, {});
   return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
 } catch (const cn::PolyMemoryOverflow&) {
-  return -1;  // not even with plenty
+  return -1;  // beyond any SRAM
 } catch (const path_tracer::ProgramError& error) {
   throw InputError(error.what());
 }
 
-/// Whether eight children a node cost less than four. Packets never go round: four are best.
+/// Whether eight children a node cost less than four. Packets make no turns: four are best.
 bool suits_wide_nodes(Traversal traversal, std::size_t triangles) {
   return traversal != Traversal::packets && triangles >= 5000;
 }
 
-/// Rays that wait for I/O do best with the fewest bytes, those that wait for kernels with what is decoded
-/// soonest.
+/// Rays that wait for I/O do best with the fewest bytes, rays that wait for kernels with the boxes that are
+/// decoded fastest.
 path_tracer::NodeFormat suited_format(Traversal traversal, int width) {
   const bool waits_for_kernels = traversal == Traversal::lock_step || traversal == Traversal::packets;
   const path_tracer::NodeLayout quantised{path_tracer::NodeFormat::quantised8, width};
   return waits_for_kernels || !quantised.has_kernel() ? path_tracer::NodeFormat::fp32 : quantised.format;
 }
 
-/// The more the faster a node is visited, and the more to go round once more costs.
+/// More visits a turn pay where a node is visited fast and another turn costs much.
 int suited_visits(Traversal traversal, const path_tracer::NodeLayout& layout) {
   const bool is_fast = layout.format == path_tracer::NodeFormat::fp32;
   switch (traversal) {
@@ -111,40 +113,52 @@ int suited_visits(Traversal traversal, const path_tracer::NodeLayout& layout) {
   }
 }
 
-path_tracer::TreeShape suited_tree(int width, const ProgramConfig& of, const TreeWishes& wishes) {
+path_tracer::TreeShape suited_tree(int width, const ProgramConfig& of, const TreeOverrides& overrides) {
   constexpr int kTreeletChildren = 8;
   path_tracer::TreeShape tree = of.tree;
   tree.layout.width = width;
-  tree.layout.format = wishes.node_format.value_or(suited_format(of.traversal, width));
-  tree.treelet_nodes = wishes.treelet_nodes.value_or(kTreeletChildren / width);
-  tree.stack_entries = wishes.stack_entries.value_or(tree.stack_entries);
-  tree.visits = wishes.visits.value_or(suited_visits(of.traversal, tree.layout));
+  tree.layout.format = overrides.node_format.value_or(suited_format(of.traversal, width));
+  tree.treelet_nodes = overrides.treelet_nodes.value_or(kTreeletChildren / width);
+  tree.stack_entries = overrides.stack_entries.value_or(tree.stack_entries);
+  tree.visits = overrides.visits.value_or(suited_visits(of.traversal, tree.layout));
   return tree;
 }
 
-/// With a shorter stack, then with smaller treelets.
+/// The program's tree with a shorter stack, then with smaller treelets; none if that does not fit either.
 std::optional<path_tracer::TreeShape> shrunk_to_fit(const ProgramConfig& program,
-                                                    const model::ChipConfig& chip, const TreeWishes& wishes) {
+                                                    const model::ChipConfig& chip,
+                                                    const TreeOverrides& overrides) {
   // Segments a second by the temporary bin, 100,000 triangles: 159 k with treelets of 2 nodes and 2 entries,
   // 152 k with 1 node and 8 entries, 138 k with 2 nodes and 1 entry.
   constexpr int kFewEntries = 2;
   ProgramConfig fitting = program;
   path_tracer::TreeShape& tree = fitting.tree;
   for (;; tree.treelet_nodes /= 2) {
-    const bool is_least_treelet = tree.treelet_nodes <= 1 || wishes.treelet_nodes.has_value();
+    const bool is_least_treelet = tree.treelet_nodes <= 1 || overrides.treelet_nodes.has_value();
     const int least_entries = is_least_treelet ? 0 : kFewEntries;
     for (tree.stack_entries = program.tree.stack_entries;; tree.stack_entries /= 2) {
       if (bytes_left(fitting, chip) >= 0) return tree;
-      if (tree.stack_entries <= least_entries || wishes.stack_entries.has_value()) break;
+      if (tree.stack_entries <= least_entries || overrides.stack_entries.has_value()) break;
     }
     if (is_least_treelet) return {};
   }
 }
 
-std::string in_words(double cycles) {
+std::string rounded(double cycles) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.0f", cycles);
   return text;
+}
+
+TreeOverrides overrides_of(const ProgramConfig& program, const GivenOptions& given) {
+  const path_tracer::TreeShape& tree = program.tree;
+  TreeOverrides overrides;
+  if (given.count("treelet_nodes") != 0) overrides.treelet_nodes = tree.treelet_nodes;
+  if (given.count("stack_entries") != 0) overrides.stack_entries = tree.stack_entries;
+  if (given.count("node_width") != 0) overrides.node_width = tree.layout.width;
+  if (given.count("visits") != 0) overrides.visits = tree.visits;
+  if (given.count("node_format") != 0) overrides.node_format = tree.layout.format;
+  return overrides;
 }
 
 }  // namespace
@@ -175,23 +189,23 @@ TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeS
   const TraversalCosts costs = estimate_traversal(triangles, tree, chip);
   const bool uses_tree = costs.tree < costs.brute_force;
   return {uses_tree ? Traversal::refill : Traversal::brute_force,
-          std::to_string(triangles) + " triangles: about " + in_words(costs.brute_force) +
-              " cycles a ray by brute force, " + in_words(costs.tree) + " with a tree"};
+          std::to_string(triangles) + " triangles: about " + rounded(costs.brute_force) +
+              " cycles a ray by brute force, " + rounded(costs.tree) + " with a tree"};
 }
 
-path_tracer::TreeShape wished_tree(const ProgramConfig& program, const TreeWishes& wishes) {
-  return suited_tree(wishes.node_width.value_or(program.tree.layout.width), program, wishes);
+path_tracer::TreeShape overridden_tree(const ProgramConfig& program, const TreeOverrides& overrides) {
+  return suited_tree(overrides.node_width.value_or(program.tree.layout.width), program, overrides);
 }
 
 path_tracer::TreeShape tree_that_fits(std::size_t triangles, const ProgramConfig& program,
-                                      const model::ChipConfig& chip, const TreeWishes& wishes) {
+                                      const model::ChipConfig& chip, const TreeOverrides& overrides) {
   ProgramConfig suited = program;
-  if (!wishes.node_width && suits_wide_nodes(program.traversal, triangles)) {
-    suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program, wishes);
-    if (const auto fitting = shrunk_to_fit(suited, chip, wishes)) return *fitting;
+  if (!overrides.node_width && suits_wide_nodes(program.traversal, triangles)) {
+    suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program, overrides);
+    if (const auto fitting = shrunk_to_fit(suited, chip, overrides)) return *fitting;
   }
-  suited.tree = wished_tree(program, wishes);
-  return shrunk_to_fit(suited, chip, wishes).value_or(suited.tree);
+  suited.tree = overridden_tree(program, overrides);
+  return shrunk_to_fit(suited, chip, overrides).value_or(suited.tree);
 }
 
 int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program,
@@ -209,10 +223,20 @@ void complete_traversal(std::size_t triangles, const model::ChipConfig& chip, Pr
   program.tree.resident_nodes = resident_nodes_that_fit(triangles, program, chip);
 }
 
-void fit_tree(std::size_t triangles, const model::ChipConfig& chip, const TreeWishes& wishes,
-              ProgramConfig& program) {
-  if (program.uses_tree()) program.tree = tree_that_fits(triangles, program, chip, wishes);
+std::string choose_tree(std::size_t triangles, const model::ChipConfig& chip, const GivenOptions& given,
+                        ProgramConfig& program) {
+  const TreeOverrides overrides = overrides_of(program, given);
+  if (given.count("resident_nodes") == 0) program.tree.resident_nodes = kAsManyAsFit;
+  program.tree = overridden_tree(program, overrides);
+  std::string reason;
+  if (given.count("traversal") == 0) {
+    const TraversalChoice choice = choose_traversal(triangles, program.tree, chip);
+    program.traversal = choice.traversal;
+    reason = choice.reason;
+  }
+  if (program.uses_tree()) program.tree = tree_that_fits(triangles, program, chip, overrides);
   complete_traversal(triangles, chip, program);
+  return reason;
 }
 
 }  // namespace testbench

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "firmware/path_tracer/program/program.hpp"
@@ -9,13 +10,13 @@
 
 namespace testbench {
 
-/// A way through a scene, and why.
+/// How rays find triangles, and why so.
 struct TraversalChoice {
   path_tracer::Traversal traversal = path_tracer::Traversal::brute_force;
   std::string reason;  ///< one line
 };
 
-/// What a ray costs, in cycles of the chip, as far as a simple model tells.
+/// What a ray costs in cycles of the chip, by a simple model.
 struct TraversalCosts {
   double brute_force = 0;
   double tree = 0;  ///< with refill
@@ -31,8 +32,8 @@ TraversalCosts estimate_traversal(std::size_t triangles, const path_tracer::Tree
 TraversalChoice choose_traversal(std::size_t triangles, const path_tracer::TreeShape& tree,
                                  const model::ChipConfig& chip);
 
-/// What the user asked for, which is left alone.
-struct TreeWishes {
+/// The values that the user gave, which are not chosen.
+struct TreeOverrides {
   std::optional<int> treelet_nodes = {};
   std::optional<int> stack_entries = {};
   std::optional<int> node_width = {};
@@ -40,32 +41,37 @@ struct TreeWishes {
   std::optional<path_tracer::NodeFormat> node_format = {};
 };
 
-/// The program's tree with the wishes, and what suits its way and their width.
-path_tracer::TreeShape wished_tree(const path_tracer::ProgramConfig& program, const TreeWishes& wishes);
+/// The program's tree with the overrides; the rest suits its traversal and its width.
+path_tracer::TreeShape overridden_tree(const path_tracer::ProgramConfig& program,
+                                       const TreeOverrides& overrides);
 
-/// The program's tree with what suits its way through so many triangles, as sweeps/node_width.toml and
-/// node_format.toml measured it, but for the wishes. Wide nodes: rays of many triangles go round less often,
-/// and to go round is what costs most. Quantised ones where I/O is what a ray waits for. Where that does not
-/// fit a PE's SRAM beside everything else, a shorter stack, then smaller treelets, then narrower nodes, as
-/// far as none was wished for; when that does not help, what was wished for. Of resident nodes, if they are
-/// as many as fit, one counts.
+/// The tree that suits the program's traversal of so many triangles, as sweeps/node_width.toml and
+/// node_format.toml measured it, but for the overrides. Nodes are wide where triangles are many: their rays
+/// make fewer turns, and a turn is what costs most. They are quantised where a ray waits for I/O. A tree that
+/// does not fit a PE's SRAM beside everything else gets a shorter stack, then smaller treelets, then narrower
+/// nodes, as far as these are not overridden; if none of that helps, the tree stays as the overrides have it.
+/// Automatic resident nodes (kAsManyAsFit) count as one while the rest is fitted.
 path_tracer::TreeShape tree_that_fits(std::size_t triangles, const path_tracer::ProgramConfig& program,
-                                      const model::ChipConfig& chip, const TreeWishes& wishes);
+                                      const model::ChipConfig& chip, const TreeOverrides& overrides);
 
 /// As many nodes as the SRAM has room for beside everything else, at least one and no more than a tree of so
 /// many triangles has.
 int resident_nodes_that_fit(std::size_t triangles, const path_tracer::ProgramConfig& program,
                             const model::ChipConfig& chip);
 
-/// For TreeShape::resident_nodes, until the scene is known.
+/// TreeShape::resident_nodes until the scene is known.
 inline constexpr int kAsManyAsFit = 0;
 
-/// Puts a number in the place of kAsManyAsFit.
+/// Replaces kAsManyAsFit by a number.
 void complete_traversal(std::size_t triangles, const model::ChipConfig& chip,
                         path_tracer::ProgramConfig& program);
 
-/// Both: gives the program, if it uses a tree, one that fits and as many resident nodes.
-void fit_tree(std::size_t triangles, const model::ChipConfig& chip, const TreeWishes& wishes,
-              path_tracer::ProgramConfig& program);
+/// Names of the firmware options that the user gave (program_options.hpp).
+using GivenOptions = std::set<std::string>;
+
+/// Chooses every option of the tree that was not given. Returns why the traversal was chosen, in a line; ""
+/// if it was given. Throws InputError for a program that the firmware refuses.
+std::string choose_tree(std::size_t triangles, const model::ChipConfig& chip, const GivenOptions& given,
+                        path_tracer::ProgramConfig& program);
 
 }  // namespace testbench

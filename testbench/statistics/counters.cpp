@@ -18,7 +18,7 @@ std::uint64_t rays(const RenderResult& run) {
   return run.counts.segments + run.counts.shadow_rays;
 }
 
-/// Nothing for a native run, which has neither clock nor energy.
+/// Null for a native run, which has neither clock nor energy.
 Json per_joule(const RenderResult& run, std::uint64_t count) {
   if (!run.chip) return nullptr;
   return double(count) / energy_of(*run.chip).joules();
@@ -72,7 +72,7 @@ bool matches(std::string_view declared, std::string_view key) {
 const Counters<RenderResult>& run_counters() {
   using Run = RenderResult;
   static const Counters<Run> counters = {
-      {{"simulated_seconds", "s", "from the firmware's start to its end; null for a native run"},
+      {{"simulated_seconds", "s", "time from the firmware's start to its end; null for a native run"},
        [](const Run& run) { return run.chip ? Json(run.chip->seconds()) : Json(); }},
       {{"simulated_cycles", "cycles", "the same in cycles of the chip"},
        [](const Run& run) { return run.chip ? Json(run.chip->firmware_cycles) : Json(); }},
@@ -85,13 +85,13 @@ const Counters<RenderResult>& run_counters() {
       {{"segments_per_joule", "-", "segments by the energy of chip and DDR; null for a native run",
         CounterKind::derived},
        [](const Run& run) { return per_joule(run, run.counts.segments); }},
-      {{"host.cpu_seconds", "s", "of this machine, without loading and writing"},
+      {{"simulator.cpu_seconds", "s", "CPU time of the simulator, without loading and writing"},
        [](const Run& run) { return Json(run.cpu_seconds); }},
-      {{"host.wall_seconds", "s", "the same by the clock on the wall"},
+      {{"simulator.wall_seconds", "s", "the same by the wall clock"},
        [](const Run& run) { return Json(run.wall_seconds); }},
-      {{"host.peak_bytes", "bytes", "memory of the process at most"},
+      {{"simulator.peak_bytes", "bytes", "memory of the process at most"},
        [](const Run&) { return Json(peak_bytes()); }},
-      {{"host.segments_per_cpu_second", "-", "how fast the model renders", CounterKind::derived},
+      {{"simulator.segments_per_cpu_second", "-", "how fast the model renders", CounterKind::derived},
        [](const Run& run) { return Json(double(run.counts.segments) / run.cpu_seconds); }}};
   return counters;
 }
@@ -115,7 +115,8 @@ const Counters<RunCounts>& firmware_counters() {
        paths_alive},
       {{"passes", "count", "times that all live blocks went through the bins"},
        [](const RunCounts& c) { return Json(c.rays.passes()); }},
-      {{"passes_per_interval", "count", "of rays_by_interval; the last interval may have fewer"},
+      {{"passes_per_interval", "count",
+        "passes of each interval of rays_by_interval; the last interval may have fewer"},
        [](const RunCounts& c) { return Json(c.rays.passes_per_interval()); }},
       {{"rays_by_interval.*", "count",
         "rays in the ray bin, summed over the passes of each interval of time"},
@@ -131,7 +132,7 @@ const Counters<RunCounts>& firmware_counters() {
       {{"traversal.lanes_by_pass.*", "count", "PEs of the blocks that these rays filled"},
        [](const RunCounts& c) { return Json(c.traversal.lanes); }},
       {{"traversal.rays_before_tail", "count",
-        "rays that went through the traversal bin, until 95 % of those in the ray bin were through"},
+        "rays that went through the traversal bin until 95 % of those in the ray bin had finished"},
        [](const RunCounts& c) { return Json(c.traversal.rays_before_tail); }},
       {{"traversal.lanes_before_tail", "count", "PEs of the blocks that these rays filled"},
        [](const RunCounts& c) { return Json(c.traversal.lanes_before_tail); }}};

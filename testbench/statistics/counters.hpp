@@ -19,9 +19,12 @@ inline constexpr std::array<std::string_view, 11> kCounterUnits = {
     "-", "count", "cycles", "s", "Hz", "bytes", "bytes/s", "flop/s", "flop/byte", "J", "W"};
 
 enum class CounterKind : std::uint8_t {
-  counted,  ///< by the chip, the firmware or the host
+  counted,  ///< by the chip, the firmware or the simulator
   derived,  ///< from others and from the chip's parameters
 };
+
+/// The section of what the simulator took: time and memory of this process. It differs from run to run.
+inline constexpr const char* kSimulatorSection = "simulator";
 
 /// One counter of a run. JSON, CSV and text take name, unit and meaning from here and from nowhere else.
 struct Counter {

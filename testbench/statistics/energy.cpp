@@ -44,7 +44,7 @@ class Causes {
   void chip(const std::string& name, double joules) { causes_.push_back({name, joules, false}); }
   void ddr(const std::string& name, double joules) { causes_.push_back({name, joules, true}); }
 
-  /// Of enabled PEs. The code quality factor stands for that many more instructions of the same mix.
+  /// Energy of enabled PEs. The code quality factor stands for that many more instructions of the same mix.
   double executed(InstructionClass c) const {
     return scale_ * run_.config.poly.code_quality_factor * table_.picojoules[std::size_t(c)] *
            double(run_.all_kernels.executed[c]);

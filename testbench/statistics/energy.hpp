@@ -13,7 +13,7 @@ struct Energy {
   struct Cause {
     std::string name;
     double joules;
-    bool in_ddr;  ///< of the memory devices; everything else is the chip's
+    bool in_ddr;  ///< spent in the memory devices; all else is spent in the chip
   };
   std::vector<Cause> causes;  ///< those above zero among the instruction classes, and all others
   double seconds = 0;

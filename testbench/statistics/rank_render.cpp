@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "testbench/statistics/counters.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -32,14 +33,14 @@ void add_part(const Scene& scene, const std::string& message, RankRender& render
   Json& statistics = json["statistics"];
   render.film.merge(Film::from_bytes(scene.film, film_scale(scene), message.substr(end + 1)));
   render.segments += statistics["segments"].get<std::uint64_t>();
-  render.cpu_seconds += statistics["host"]["cpu_seconds"].get<double>();
+  render.cpu_seconds += statistics[kSimulatorSection]["cpu_seconds"].get<double>();
   if (statistics["simulated_seconds"].is_number())
     render.simulated_seconds =
         std::max(render.simulated_seconds.value_or(0), statistics["simulated_seconds"].get<double>());
   parts.push_back(std::move(statistics));
 }
 
-/// Of the first rank that failed, whatever it was that did.
+/// Throws what the first rank that failed has thrown.
 void throw_error(const std::vector<std::string>& messages) {
   for (std::size_t rank = 0; rank < messages.size(); ++rank) {
     const Json json = Json::parse(messages[rank].substr(0, messages[rank].find('\n')));
@@ -77,7 +78,7 @@ std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, cons
   Json parts = Json::array();
   for (const std::string& message : messages) add_part(scene, message, render, parts);
   render.statistics = {
-      {"format", "csx600-rank-statistics-1"},
+      {"format", "csx600-rank-statistics-2"},
       {"scene", request.scene},
       {"ranks", ranks.size()},
       {"simulated_seconds", render.simulated_seconds ? Json(*render.simulated_seconds) : Json()},

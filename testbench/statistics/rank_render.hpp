@@ -14,10 +14,10 @@ struct RankRender {
   std::uint64_t segments = 0;
   double cpu_seconds = 0;                   ///< of all ranks
   std::optional<double> simulated_seconds;  ///< of the chip that took longest
-  nlohmann::ordered_json statistics;  ///< format csx600-rank-statistics-1: sums, and each rank's own file
+  nlohmann::ordered_json statistics;  ///< format csx600-rank-statistics-2: sums, and each rank's own file
 };
 
-/// All ranks call it with the same request; the first returns the render, the others nothing. Throws what
+/// All ranks call it with the same request; the first returns the render, the others none. Throws what
 /// render_on_chip() does, on the first rank also for the others.
 std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, const RenderRequest& request,
                                           const RenderProgress& progress);

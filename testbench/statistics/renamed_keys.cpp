@@ -14,6 +14,7 @@ bool is_at_or_below(std::string_view key, std::string_view section) {
 
 const std::vector<RenamedKey>& renamed_keys() {
   static const std::vector<RenamedKey> keys = {
+      {"host", "simulator"},  // the chip's parameters host.* are chip_config.host.* in statistics
       {"chip.host_link.host_dmas", "chip.host_link.transfers"},
   };
   return keys;

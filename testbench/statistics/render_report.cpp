@@ -1,12 +1,15 @@
 #include "testbench/statistics/render_report.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "model/config/chip_file.hpp"
+#include "firmware/path_tracer/program/program_options.hpp"
+#include "model/config/chip_parameters.hpp"
 #include "testbench/paper/paper.hpp"
-#include "testbench/run/program_names.hpp"
+#include "testbench/run/timing_name.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/energy.hpp"
 #include "testbench/statistics/roofline.hpp"
@@ -17,34 +20,36 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* buffering_name(const path_tracer::ProgramConfig& program) {
-  if (program.buffer_loads) return program.buffer_saves ? "both" : "loads";
-  return program.buffer_saves ? "saves" : "none";
+Json value_json(const path_tracer::OptionValue& value) {
+  return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
-Json program_json(const RenderOptions& options) {
-  const path_tracer::ProgramConfig& program = options.program;
-  const path_tracer::TreeShape& tree = program.tree;
-  return {{"program", program_name(program.program)},
-          {"n", program.n},
-          {"buffer", buffering_name(program)},
-          {"bin_blocks", program.bin_blocks},
-          {"slot_vertices", program.slot_vertices},
-          {"sampler", sampler_name(program.sampler)},
-          {"light_sampling", light_sampling_name(program.light_sampling)},
-          {"roulette_start", program.roulette_start},
-          {"max_survival", program.max_survival},
-          {"seed", program.seed},
-          {"pixel_stride", program.pixel_stride},
-          {"traversal", traversal_name(program.traversal)},
-          {"node_format", node_format_name(tree.layout.format)},
-          {"node_width", tree.layout.width},
-          {"leaf_triangles", tree.leaf_triangles},
-          {"treelet_nodes", tree.treelet_nodes},
-          {"resident_nodes", tree.resident_nodes},
-          {"stack_entries", tree.stack_entries},
-          {"visits", tree.visits},
-          {"samples", options.work.samples}};
+/// Every option of the firmware, and the samples.
+Json firmware_json(const RenderOptions& options) {
+  Json json;
+  for (const path_tracer::ProgramOption& option : path_tracer::program_options())
+    json[option.name] = value_json(option.read(options.program));
+  json["samples"] = options.work.samples;
+  return json;
+}
+
+/// A real number without a fraction is written as chip files write it, without a point.
+Json value_json(const model::ParameterValue& value) {
+  constexpr double kExactIntegers = 0x1p53;
+  if (const double* const real = std::get_if<double>(&value))
+    if (*real == std::floor(*real) && std::abs(*real) < kExactIntegers) return std::int64_t(*real);
+  return std::visit([](const auto& held) { return Json(held); }, value);
+}
+
+/// "pio.setup_cycles" at ["pio"]["setup_cycles"].
+Json chip_json(const model::ChipConfig& chip) {
+  Json json = {{"preset", chip.preset}};
+  for (const model::ParameterInfo& parameter : model::parameter_table()) {
+    std::string path = parameter.key;
+    std::replace(path.begin(), path.end(), '.', '/');
+    json[Json::json_pointer("/" + path)] = value_json(parameter.read(chip));
+  }
+  return json;
 }
 
 std::string text(const char* format, double value) {
@@ -87,19 +92,19 @@ void add_chip_rows(const RenderResult& result, Rows& rows) {
   add_roofline_row(chip, rows);
 }
 
-void add_host_rows(const RenderRequest& request, const RenderResult& result, Rows& rows) {
+void add_simulator_rows(const RenderRequest& request, const RenderResult& result, Rows& rows) {
   const double rate = double(result.counts.segments) / result.cpu_seconds;
   const double silicon = silicon_segments_per_second(request.options.program.program);
-  rows.emplace_back("host time",
+  rows.emplace_back("simulator time",
                     text("%.2f s CPU", result.cpu_seconds) + text(", %.2f s wall", result.wall_seconds));
-  rows.emplace_back("host segments/s", text("%.0f", rate));
+  rows.emplace_back("simulator segments/s", text("%.0f", rate));
   rows.emplace_back("faster than the silicon",
                     text("%.1f times", rate / silicon) + text(" (paper: %.0f segments/s)", silicon));
 }
 
 void add_traversal_row(const RenderRequest& request, const path_tracer::RunCounts& counts, Rows& rows) {
   const path_tracer::ProgramConfig& program = request.options.program;
-  std::string row = traversal_name(program.traversal);
+  std::string row = name_of(program.traversal);
   if (program.uses_tree()) {
     const double rays = double(counts.segments + counts.shadow_rays);
     row += text(": %.2f leaves", double(counts.traversal.leaf_loads) / rays) +
@@ -107,10 +112,6 @@ void add_traversal_row(const RenderRequest& request, const path_tracer::RunCount
   }
   if (!request.traversal_reason.empty()) row += " (" + request.traversal_reason + ")";
   rows.emplace_back("traversal", row);
-}
-
-const char* timing_name(model::TimingStyle timing) {
-  return timing == model::TimingStyle::approximately_timed ? "at" : "lt";
 }
 
 }  // namespace
@@ -121,21 +122,21 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   json["scene"] = request.scene;
   json["width"] = result.film.size().width;
   json["height"] = result.film.size().height;
-  json["firmware"] = program_json(request.options);
+  json["firmware"] = firmware_json(request.options);
   if (!request.traversal_reason.empty()) json["traversal_chosen_because"] = request.traversal_reason;
   json["machine"] = request.native ? "native" : "chip";
   json["timing"] = request.native ? "none" : timing_name(request.options.timing);
   json["chip_preset"] = request.options.chip.preset;
-  json["chip_config"] = model::effective_toml(request.options.chip);
+  json["chip_config"] = chip_json(request.options.chip);
   Json measured;
   write_counters(run_counters(), result, measured);
-  const Json host = measured["host"];
-  measured.erase("host");
+  const Json simulator = measured[kSimulatorSection];
+  measured.erase(kSimulatorSection);
   json.update(measured);
   json["image_sha256"] = result.film.sha256();
   json["counts"] = to_json(result.counts);
   if (result.chip) json["chip"] = to_json(*result.chip);
-  json["host"] = host;
+  json[kSimulatorSection] = simulator;
   return json;
 }
 
@@ -147,7 +148,7 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));
   add_traversal_row(request, counts, rows);
   if (result.chip) add_chip_rows(result, rows);
-  add_host_rows(request, result, rows);
+  add_simulator_rows(request, result, rows);
   std::string table;
   for (const auto& [label, value] : rows) {
     char name[32];
@@ -160,7 +161,7 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
 std::map<std::string, std::string> render_provenance(const RenderRequest& request,
                                                      const RenderResult& result) {
   return {{"csx600.scene", request.scene},
-          {"csx600.firmware", program_json(request.options).dump()},
+          {"csx600.firmware", firmware_json(request.options).dump()},
           {"csx600.machine", request.native ? "native" : "chip " + request.options.chip.preset},
           {"csx600.segments", std::to_string(result.counts.segments)},
           {"csx600.image_sha256", result.film.sha256()}};

@@ -13,17 +13,17 @@ struct RenderRequest {
   std::string scene;
   RenderOptions options;
   bool native = false;
-  std::string traversal_reason =
-      {};  ///< why the host chose the way through the scene; empty when the user did
+  std::string traversal_reason = {};  ///< why the traversal was chosen; empty when the user gave it
 };
 
-/// The statistics file. Everything but the section `host` is the same for the same inputs, byte for byte.
+/// The statistics file. Everything but the section `simulator` is the same for the same inputs, byte for
+/// byte.
 nlohmann::ordered_json render_statistics(const RenderRequest& request, const RenderResult& result);
 
 /// The same as a small table for people.
 std::string render_table(const RenderRequest& request, const RenderResult& result);
 
-/// For the image's header: what made it.
+/// What made the image, for its header.
 std::map<std::string, std::string> render_provenance(const RenderRequest& request,
                                                      const RenderResult& result);
 

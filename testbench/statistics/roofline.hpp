@@ -26,13 +26,13 @@ struct Roofline {
   const Roof& nearest() const;
   const Roof& roof(std::string_view name) const;
   double flops() const { return roof("pe_array").amount; }
-  /// Where the nearest roof would stop the same program if nothing else held it up.
+  /// The rate of operations at which the nearest roof would stop the same program.
   double attainable_flops_per_second() const;
   /// Operations for each byte through that roof; 0 when no byte went through.
   double intensity(std::string_view name) const;
 };
 
-/// Of the time from the firmware's start to its end. Peaks from the chip's parameters:
+/// The roofline of the time from the firmware's start to its end. Peaks come from the chip's parameters:
 ///   pe_array       PEs x clock x most operations that any instruction class does a cycle (cost table)
 ///   pio            bytes a cycle of its engine, or of its two engines
 ///   clear_connect  bytes a cycle of a node's link, both ways

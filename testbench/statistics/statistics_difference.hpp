@@ -11,10 +11,10 @@ namespace testbench {
 /// A value that two runs do not have in common.
 struct Difference {
   std::string key;
-  std::optional<nlohmann::ordered_json> a;  ///< nothing when that run does not have the key
+  std::optional<nlohmann::ordered_json> a;  ///< none when that run does not have the key
   std::optional<nlohmann::ordered_json> b;
 
-  /// (b - a) / the larger of |a| and |b|; nothing unless both are numbers.
+  /// (b - a) / the larger of |a| and |b|; none unless both are numbers.
   std::optional<double> relative() const;
 };
 
@@ -23,7 +23,7 @@ inline const std::string& key_of(const Difference& difference) {
 }
 
 struct Tolerance {
-  std::string glob;     ///< of keys, as the shell's: * ? [ ]
+  std::string glob;     ///< shell pattern of keys: * ? [ ]
   double relative = 0;  ///< numbers that differ by at most so much are equal
 };
 

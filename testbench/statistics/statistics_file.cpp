@@ -1,7 +1,5 @@
 #include "testbench/statistics/statistics_file.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -16,33 +14,6 @@ namespace testbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json toml_value(const toml::node& node) {
-  if (const auto text = node.value_exact<std::string>()) return *text;
-  if (const auto number = node.value_exact<std::int64_t>()) return *number;
-  if (const auto number = node.value_exact<double>()) return *number;
-  if (const auto flag = node.value_exact<bool>()) return *flag;
-  return nullptr;
-}
-
-void flatten_toml(const std::string& prefix, const toml::table& table, FlatStatistics& flat) {
-  for (const auto& [name, node] : table) {
-    const std::string key = prefix + "." + std::string(name.str());
-    if (const toml::table* const inner = node.as_table()) {
-      flatten_toml(key, *inner, flat);
-    } else {
-      flat.emplace_back(key, toml_value(node));
-    }
-  }
-}
-
-void flatten_chip(const std::string& key, const std::string& text, FlatStatistics& flat) {
-  try {
-    flatten_toml(key, toml::parse(text), flat);
-  } catch (const toml::parse_error&) {
-    flat.emplace_back(key, text);
-  }
-}
 
 bool is_named(const Json& json) {
   return json.is_object() && json.contains("name") && json["name"].is_string();
@@ -59,8 +30,6 @@ void flatten_into(const std::string& key, const Json& json, FlatStatistics& flat
       if (is_named(element)) element.erase("name");
       flatten_into(prefix + name, element, flat);
     }
-  } else if (key == "chip_config" && json.is_string()) {
-    flatten_chip(key, json.get<std::string>(), flat);
   } else {
     flat.emplace_back(key, json);
   }
@@ -100,6 +69,13 @@ FlatStatistics flatten(const Json& statistics) {
   return flat;
 }
 
+void require_statistics_format(const std::string& format, const std::string& origin) {
+  if (format == kStatisticsFormat) return;
+  const bool is_older = format == "csx600-statistics-1";
+  throw InputError(origin + ": format: found '" + format + "', allowed is '" + kStatisticsFormat + "'" +
+                   (is_older ? "; an older csx600 wrote it, with other keys: run the render again" : ""));
+}
+
 Json read_statistics(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path))
@@ -113,8 +89,7 @@ Json parse_statistics(const std::string& text, const std::string& origin) {
   if (json.is_discarded() || !json.is_object())
     throw InputError(origin + ": not a whole JSON object; allowed is a statistics file");
   const std::string format = has(json, "format") ? value_of(json["format"]) : "no format";
-  if (format != kStatisticsFormat)
-    throw InputError(origin + ": format: found '" + format + "', allowed is '" + kStatisticsFormat + "'");
+  require_statistics_format(format, origin);
   require_current_keys(origin, flatten(json));
   require_counters(json, origin);
   return json;

@@ -8,26 +8,28 @@
 
 namespace testbench {
 
-inline constexpr const char* kStatisticsFormat = "csx600-statistics-1";
+inline constexpr const char* kStatisticsFormat = "csx600-statistics-2";
 
-/// The values of a statistics file by key, in the order of the file. What an array's elements are called
-/// comes from their "name", or is their index; the chip's parameters are keys of their own
-/// ("chip_config.pio.setup_cycles").
+/// Throws InputError, one line that names the file, for another format than kStatisticsFormat.
+void require_statistics_format(const std::string& format, const std::string& origin);
+
+/// The values of a statistics file by key, in the order of the file: "chip_config.pio.setup_cycles". An
+/// element of an array is called by its "name", or by its index if it has none.
 using FlatStatistics = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
 FlatStatistics flatten(const nlohmann::ordered_json& statistics);
 
 /// Throws InputError, one line that names the file, when it cannot be read, is not JSON, has another format,
 /// calls a counter by an old name (renamed_keys.hpp) or lacks one.
 nlohmann::ordered_json read_statistics(const std::string& path);
-/// The same of a text that came from `origin`.
+/// The same for a text that came from `origin`.
 nlohmann::ordered_json parse_statistics(const std::string& text, const std::string& origin);
 
-/// For people: values with units, by group.
+/// Text for people: values with units, by group.
 std::string statistics_text(const nlohmann::ordered_json& statistics);
 /// key,unit,value,meaning
 std::string statistics_csv(const nlohmann::ordered_json& statistics);
 std::string statistics_json(const nlohmann::ordered_json& statistics);
-/// By the suffix of the path: .csv, .txt, otherwise JSON.
+/// In the form of the suffix of the path: .csv, .txt, otherwise JSON.
 std::string statistics_for_file(const std::string& path, const nlohmann::ordered_json& statistics);
 
 inline const std::string& key_of(const FlatStatistics::value_type& value) {
@@ -35,15 +37,15 @@ inline const std::string& key_of(const FlatStatistics::value_type& value) {
 }
 /// The last part of a key: "busy_cycles".
 std::string name_of(const std::string& key);
-/// What a key belongs to: "counts", "chip.pio", "chip.pe_array.kernels.intersect".
+/// The group of a key: "counts", "chip.pio", "chip.pe_array.kernels.intersect".
 std::string group_of(const std::string& key);
-/// Its unit, "" for what the run was asked to do.
+/// The unit of a key, "" for what the run was asked to do.
 std::string unit_of(const std::string& key);
 /// Strings without quotes, the rest as JSON writes it.
 std::string value_of(const nlohmann::ordered_json& value);
 
-/// Puts what belongs to one group together, groups and keys otherwise in their order. key_of() knows
-/// the key of an item.
+/// Puts the items of a group together; groups and keys stay in their order otherwise. key_of() knows the key
+/// of an item.
 template <class Item>
 std::vector<Item> grouped(const std::vector<Item>& items) {
   std::vector<std::string> groups;

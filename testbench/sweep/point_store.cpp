@@ -16,7 +16,7 @@
 namespace testbench {
 namespace {
 
-constexpr const char* kFormat = "csx600-sweep-points-1";
+constexpr const char* kFormat = "csx600-sweep-points-2";
 
 std::string read_file(const std::filesystem::path& path) {
   std::ostringstream text;
@@ -84,7 +84,8 @@ void PointStore::take_line(const std::string& line, std::size_t number, const st
   if (number == 1) {
     const std::string format = json.value("format", "");
     if (format != kFormat)
-      throw InputError(place + "format: found '" + format + "'; allowed: '" + kFormat + "'");
+      throw InputError(place + "format: found '" + format + "'; allowed: '" + kFormat +
+                       "', or another directory (-o)");
     if (json.value("build", "") != build)
       throw InputError(place +
                        "build: found results of another build of csx600; allowed: this build's, or "

@@ -27,7 +27,7 @@ class PointStore {
   const Json* find(const std::string& id) const;
   /// Throws RunError, with the file as it was, when the disk does not take the whole line.
   void add(const std::string& id, Json result);
-  /// For a point that is to be run again; its line stays, the later one counts.
+  /// Forgets a point that is to be run again. Its line stays in the file; the later one counts.
   void forget(const std::string& id) { points_.erase(id); }
 
   const std::filesystem::path& path() const { return path_; }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "testbench/statistics/counters.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/processes.hpp"
 
@@ -12,11 +13,11 @@ using Json = nlohmann::ordered_json;
 
 Json done_point(const SweepPoint& point, const RenderResult& result, const char* how) {
   Json statistics = render_statistics(point.request, result);
-  statistics.erase("host");
+  statistics.erase(kSimulatorSection);
   return {{"status", "done"},
           {"how", how},
           {"audited", false},
-          {"host_cpu_seconds", result.cpu_seconds},
+          {"simulator_cpu_seconds", result.cpu_seconds},
           {"statistics", std::move(statistics)}};
 }
 
@@ -55,7 +56,7 @@ std::string first_difference(const Json& a, const Json& b) {
   const std::string path = changes[0]["path"];
   const Json::json_pointer pointer(path);
   const auto text = [&](const Json& json) {
-    return json.contains(pointer) ? json[pointer].dump() : "nothing";
+    return json.contains(pointer) ? json[pointer].dump() : "missing";
   };
   return path + ": " + text(a) + ", " + text(b);
 }

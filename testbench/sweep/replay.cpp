@@ -17,7 +17,7 @@ RenderResult replay_on_chip(const Recording& recording, const RenderOptions& opt
   const SimulatorTimer timer;
   require_mono_memory(recording.image, options.chip);
   RenderResult result = recording.result;
-  // The host fetches as many results as it would, but what it finds is of no use.
+  // The host fetches as many results as in a full run and drops them.
   Film nobody_looks_at(result.film.size(), result.film.scale());
   model::Csx600 chip("csx600", options.chip, options.timing);
   HostPc host("host", chip, recording.image, nobody_looks_at);

@@ -1,11 +1,12 @@
 #include "testbench/sweep/sweep_file.hpp"
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
+#include "testbench/run/toml_settings.hpp"
+#include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/input_file.hpp"
 
@@ -22,21 +23,6 @@ toml::table parse(const std::string& path) {
     throw InputError(path + ":" + std::to_string(error.source().begin.line) +
                      ": not TOML: " + std::string(error.description()));
   }
-}
-
-/// A number, a text or a flag as `--set` would be given it; nothing for anything else.
-std::optional<std::string> scalar(const toml::node& node) {
-  if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
-  if (const auto integer = node.value_exact<std::int64_t>()) return std::to_string(*integer);
-  if (const auto real = node.value_exact<double>()) return model::value_text(*real);
-  return node.value_exact<std::string>();
-}
-
-std::string found_text(const toml::node& node) {
-  if (node.is_table()) return "a table";
-  if (node.is_array()) return "an array";
-  const std::optional<std::string> text = scalar(node);
-  return text ? "'" + *text + "'" : "a date or time";
 }
 
 /// Reads one file.
@@ -62,21 +48,18 @@ class SweepReader {
   }
 
  private:
-  std::string line_of(const toml::node& node) const {
-    return sweep_.path + ":" + std::to_string(node.source().begin.line);
-  }
   [[noreturn]] void refuse(const toml::node& node, const std::string& key, const std::string& found,
                            const std::string& allowed) const {
-    throw InputError(line_of(node) + ": " + key + ": found " + found + "; allowed: " + allowed);
+    throw InputError(line_of(sweep_.path, node) + ": " + key + ": found " + found + "; allowed: " + allowed);
   }
 
   Setting setting(const toml::node& node, const std::string& key, const std::string& value) const {
-    Setting made{key, value, line_of(node)};
+    Setting made{key, value, line_of(sweep_.path, node)};
     const bool names_file =
         key == "scene" || (key == "chip" && std::filesystem::path(value).extension() == ".toml");
     if (names_file && !std::filesystem::path(value).is_absolute())
       made.value = (std::filesystem::path(sweep_.path).parent_path() / value).lexically_normal().string();
-    require_allowed(made);
+    require_setting(made);
     return made;
   }
 
@@ -85,7 +68,7 @@ class SweepReader {
       for (const auto& [name, value] : *group) read_base(value, key + "." + std::string(name.str()));
       return;
     }
-    const std::optional<std::string> value = scalar(node);
+    const std::optional<std::string> value = scalar_text(node);
     if (!value) refuse(node, key, found_text(node), "one value; a list belongs in an [[axis]]");
     sweep_.base.push_back(setting(node, key, *value));
   }
@@ -123,35 +106,8 @@ class SweepReader {
 
   static bool is_range(const toml::table& table) { return table.contains("from") || table.contains("to"); }
 
-  /// A key of an axis with its list or range.
-  struct Leaf {
-    std::string key;
-    const toml::node* node;
-  };
-
-  void collect(const toml::table& table, const std::string& prefix, std::vector<Leaf>& leaves) const {
-    for (const auto& [name, node] : table) {
-      const std::string key = prefix + std::string(name.str());
-      const toml::table* const group = node.as_table();
-      if (group != nullptr && !is_range(*group)) {
-        collect(*group, key + ".", leaves);
-      } else {
-        leaves.push_back({key, &node});
-      }
-    }
-  }
-
-  /// In the order of the file, which a TOML table does not keep.
   void read_axis(const toml::table& table) {
-    std::vector<Leaf> leaves;
-    collect(table, "", leaves);
-    const auto place = [](const Leaf& leaf) {
-      const toml::source_position& begin = leaf.node->source().begin;
-      return std::make_pair(begin.line, begin.column);
-    };
-    std::stable_sort(leaves.begin(), leaves.end(),
-                     [&](const Leaf& a, const Leaf& b) { return place(a) < place(b); });
-    for (const auto& [key, node] : leaves) {
+    for (const auto& [key, node] : leaves_of(table, is_range)) {
       const toml::table* const as_range = node->as_table();
       add_key(*node, key, as_range != nullptr ? range(*as_range, key) : list(*node, key));
     }
@@ -175,7 +131,7 @@ class SweepReader {
     if (array->empty()) refuse(node, key, "an empty list", allowed);
     std::vector<std::string> values;
     for (const toml::node& element : *array) {
-      const std::optional<std::string> value = scalar(element);
+      const std::optional<std::string> value = scalar_text(element);
       if (!value) refuse(element, key, found_text(element) + " in a list", "values");
       if (std::find(values.begin(), values.end(), *value) != values.end() && sweep_.axes.back().keys.empty())
         refuse(element, key, "'" + *value + "' twice", "each value once");
@@ -280,6 +236,11 @@ class SweepReader {
 };
 
 }  // namespace
+
+void require_setting(const Setting& setting) {
+  if (!is_setting(setting.key)) require_current_key(setting.origin, setting.key);
+  require_allowed(setting);
+}
 
 std::vector<std::string> SweepFile::keys() const {
   std::vector<std::string> all;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/sweep/run_settings.hpp"
+#include "testbench/run/run_settings.hpp"
 
 namespace testbench {
 
@@ -42,6 +42,9 @@ struct SweepFile {
 };
 
 inline constexpr std::uint64_t kMostSweepPoints = 1'000'000;
+
+/// Throws InputError for an old or unknown key and for a value that is not allowed.
+void require_setting(const Setting& setting);
 
 /// Throws InputError that names the file, the line, the key, what was found and what is allowed.
 SweepFile load_sweep_file(const std::string& path);

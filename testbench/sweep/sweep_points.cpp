@@ -37,7 +37,7 @@ Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides)
     : keys_(file.keys()), base_(file.base) {
   for (const SweepAxis& axis : file.axes) axes_.push_back(axis.keys);
   for (const Setting& setting : overrides) {
-    require_allowed(setting);
+    require_setting(setting);
     if (std::find(keys_.begin(), keys_.end(), setting.key) != keys_.end())
       throw InputError(setting.origin + ": found '" + setting.key +
                        "', which is on an axis; allowed: other keys");

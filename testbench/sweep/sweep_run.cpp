@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kPollMilliseconds = 100;  ///< how soon a wish to stop is heard
+constexpr int kPollMilliseconds = 100;  ///< the longest that a request to stop waits
 constexpr int kRankPollMilliseconds = 1;
 
 constexpr const char* kReady = "ready";
@@ -25,7 +25,7 @@ class PointServer {
  public:
   explicit PointServer(const Sweep& sweep) : sweep_(sweep) {}
 
-  /// { point, id, replays } to { point, result: a PointStore line }. Throws nothing.
+  /// { point, id, replays } to { point, result: a PointStore line }. Does not throw.
   std::string answer(const std::string& text) {
     const Json order = Json::parse(text);
     return Json{{"point", order["point"]}, {"result", run(order)}}.dump();

@@ -10,10 +10,10 @@ namespace testbench {
 
 struct SweepRunOptions {
   int jobs = 1;          ///< processes at a time on this rank
-  bool in_full = false;  ///< nothing is replayed
+  bool in_full = false;  ///< no point is replayed
 };
 
-/// Told the share of the points that were left to do; returns false to stop.
+/// Takes the finished share of the points that were left to do; returns false to stop.
 using SweepProgress = std::function<bool(double share)>;
 
 /// Runs every point that `store` does not hold, in processes of this machine and on the other ranks, and adds

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of a distribution: a list of numbers, or counts by number.
+/// A distribution is a list of numbers, or counts by number.
 bool is_distribution(const Json& json) {
   const auto by_number = [](const auto& entry) {
     return entry.key().find_first_not_of("0123456789") == std::string::npos && entry.value().is_number();
@@ -65,7 +65,7 @@ Json headline(const Json& statistics) {
 Json results_of(const Json& statistics) {
   Json results = headline(statistics);
   Json inputs_left_out = statistics;
-  for (const char* const input : {"width", "height", "firmware"}) inputs_left_out.erase(input);
+  for (const char* const input : {"width", "height", "firmware", "chip_config"}) inputs_left_out.erase(input);
   add_numbers(inputs_left_out, "", results);
   return results;
 }

@@ -53,24 +53,24 @@ TEST(ProgramConfigTest, TheDefaultAndTheBordersAreValid) {
 }
 
 TEST(ProgramConfigTest, ErrorsNameArgumentValueAndWhatIsAllowed) {
-  EXPECT_EQ(error_of(with(&ProgramConfig::n, -1)), "n: found -1, allowed is 0 to 8");
-  EXPECT_EQ(error_of(with(&ProgramConfig::n, 9)), "n: found 9, allowed is 0 to 8");
+  EXPECT_EQ(error_of(with(&ProgramConfig::n, -1)), "n: found -1, allowed is an integer from 0 to 8");
+  EXPECT_EQ(error_of(with(&ProgramConfig::n, 9)), "n: found 9, allowed is an integer from 0 to 8");
   EXPECT_EQ(error_of(with(&ProgramConfig::bin_blocks, 0)),
-            "bin length: found 0 blocks, allowed is 1 to 65536");
+            "bin_blocks: found 0, allowed is an integer from 1 to 65536");
   ProgramConfig config;
   config.n = 5;
   config.bin_blocks = 4;
   EXPECT_EQ(error_of(config), "n: found 5, allowed is at most the bin length, 4 blocks");
   for (const int vertices : {-4, 0, 2, 6, 17})
     EXPECT_EQ(error_of(with(&ProgramConfig::slot_vertices, vertices)),
-              "vertices a path slot: found " + std::to_string(vertices) +
-                  ", allowed is a positive multiple of 4 up to 4096");
+              "slot_vertices: found " + std::to_string(vertices) +
+                  ", allowed is an integer from 4 to 4096, a multiple of 4");
   EXPECT_EQ(error_of(with(&ProgramConfig::roulette_start, -1)),
-            "roulette start: found -1, allowed is 0 or more segments");
-  for (const double survival : {0.0, 1.0, -0.5, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_EQ(error_of(with(&ProgramConfig::max_survival, survival)), "largest survival probability: found " +
-                                                                          std::to_string(survival) +
-                                                                          ", allowed is above 0 and below 1");
+            "roulette_start: found -1, allowed is an integer from 0 to 1073741824");
+  for (const auto& [survival, text] :
+       {std::pair(0.0, "0"), {1.0, "1"}, {-0.5, "-0.5"}, {std::numeric_limits<double>::quiet_NaN(), "nan"}})
+    EXPECT_EQ(error_of(with(&ProgramConfig::max_survival, survival)),
+              "max_survival: found " + std::string(text) + ", allowed is a number above 0 and below 1");
 }
 
 /// The message for a tree of that shape.
@@ -95,31 +95,32 @@ TEST(ProgramConfigTest, ShapesOfTreesAreCheckedWhereThereIsOne) {
   for (const int entries : {0, 1, 2, 16, 32})
     EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, entries)), "") << entries;
   EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, 3)),
-            "entries of the short stack: found 3, allowed is 0 or a power of two up to 32");
+            "stack_entries: found 3, allowed is one of 0, 1, 2, 4, 8, 16, 32");
   EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, 64)),
-            "entries of the short stack: found 64, allowed is 0 to 32");
+            "stack_entries: found 64, allowed is one of 0, 1, 2, 4, 8, 16, 32");
   EXPECT_EQ(error_of(tree_with(&TreeShape::stack_entries, -1)),
-            "entries of the short stack: found -1, allowed is 0 to 32");
+            "stack_entries: found -1, allowed is one of 0, 1, 2, 4, 8, 16, 32");
   for (const int visits : {0, 1, 1024}) EXPECT_EQ(error_of(tree_with(&TreeShape::visits, visits)), "");
-  EXPECT_EQ(error_of(tree_with(&TreeShape::visits, -1)), "visits a turn: found -1, allowed is 0 to 1024");
+  EXPECT_EQ(error_of(tree_with(&TreeShape::visits, -1)),
+            "visits: found -1, allowed is an integer from 0 to 1024");
   EXPECT_EQ(error_of(tree_with(&TreeShape::leaf_triangles, 0)),
-            "triangles a leaf: found 0, allowed is 1 to 8");
+            "leaf_triangles: found 0, allowed is an integer from 1 to 8");
   EXPECT_EQ(error_of(tree_with(&TreeShape::leaf_triangles, 9)),
-            "triangles a leaf: found 9, allowed is 1 to 8");
+            "leaf_triangles: found 9, allowed is an integer from 1 to 8");
   EXPECT_EQ(error_of(tree_with(&TreeShape::treelet_nodes, 0)),
-            "nodes a treelet: found 0, allowed is 1 to 1024");
+            "treelet_nodes: found 0, allowed is an integer from 1 to 1024");
   EXPECT_EQ(error_of(tree_with(&TreeShape::resident_nodes, 1025)),
-            "resident nodes: found 1025, allowed is 1 to 1024");
+            "resident_nodes: found 1025, allowed is an integer from 1 to 1024");
   const auto error_of_layout = [](path_tracer::NodeFormat format, int width) {
     return error_of(tree_with(&TreeShape::layout, {format, width}));
   };
   for (const int width : {2, 4, 8}) EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::fp32, width), "");
   EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::fp64, 3),
-            "children a node: found 3, allowed is 2, 4 or 8");
+            "node_width: found 3, allowed is one of 2, 4, 8");
   EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::fp64, 16),
-            "children a node: found 16, allowed is 2, 4 or 8");
+            "node_width: found 16, allowed is one of 2, 4, 8");
   EXPECT_EQ(error_of_layout(path_tracer::NodeFormat::quantised8, 2),
-            "children a node: found 2, allowed is 4 or 8 of quantised8");
+            "node_width: found 2, allowed is 4 or 8 with node_format quantised8");
 }
 
 TEST(ProgramConfigTest, BuffersFollowN) {

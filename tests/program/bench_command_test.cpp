@@ -71,7 +71,7 @@ TEST_F(BenchCommand, CurveHasAPointForEachPowerOfTwo) {
   }
 }
 
-/// The error does not depend on the machine, so both ways have the same columns.
+/// The error does not depend on the machine, so both runs have the same columns.
 TEST_F(BenchCommand, NativeRunsLeaveTheTimedColumnsEmpty) {
   make_reference();
   EXPECT_EQ(measure({"--csv", "a.csv"}).exit_code, 0);

@@ -1,4 +1,4 @@
-// Bad input: exit code 2 (1 for a run that failed), one line that names what is wrong, and nothing left
+// Bad input: exit code 2 (1 for a run that failed), one line that names what is wrong, and no file left
 // behind.
 
 #include <unistd.h>
@@ -36,7 +36,7 @@ class CommandLineErrors : public test_support::CommandLineFixture {
       EXPECT_NE(lines[0].find(part), std::string::npos) << part << " in: " << lines[0];
     return lines[0];
   }
-  /// Of rendering the Cornell box with every output asked for.
+  /// Expects the error from a render of the Cornell box that has every output option.
   void expect_render_error(const Words& arguments, const Words& parts, int exit_code = 2) {
     Words all = {"render", kCornellBox, "--exr", "a.exr", "--png", "a.png", "--stats", "a.json"};
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -86,12 +86,13 @@ TEST_F(CommandLineErrors, Size) {
 }
 
 TEST_F(CommandLineErrors, Firmware) {
-  expect_render_error({"--n", "9"}, {"n: found 9", "0 to 8"});
-  expect_render_error({"--n", "-1"}, {"n: found -1", "0 to 8"});
+  expect_render_error({"--n", "9"}, {"--n: found '9'", "0 to 8"});
+  expect_render_error({"--n", "-1"}, {"--n: found '-1'", "0 to 8"});
+  expect_render_error({"--n", "1.5"}, {"--n: found '1.5'", "an integer from 0 to 8"});
   expect_render_error({"--n", "4", "--bin-blocks", "3"}, {"n: found 4", "bin length", "3 blocks"});
-  expect_render_error({"--bin-blocks", "0"}, {"found 0", "1 to 65536"});
-  expect_render_error({"--slot-vertices", "6"}, {"found 6", "multiple of 4"});
-  expect_render_error({"--roulette-start", "-3"}, {"roulette", "-3"});
+  expect_render_error({"--bin-blocks", "0"}, {"--bin-blocks: found '0'", "1 to 65536"});
+  expect_render_error({"--slot-vertices", "6"}, {"--slot-vertices: found '6'", "multiple of 4"});
+  expect_render_error({"--roulette-start", "-3"}, {"--roulette-start: found '-3'", "from 0"});
 }
 
 TEST_F(CommandLineErrors, Tree) {
@@ -99,13 +100,14 @@ TEST_F(CommandLineErrors, Tree) {
     arguments.insert(arguments.end(), {"--traversal", "refill"});
     expect_render_error(arguments, parts);
   };
-  expect_tree_error({"--node-width", "3"}, {"--node-width", "3", "2,4,8"});
+  expect_tree_error({"--node-width", "3"}, {"--node-width: found '3'", "2, 4, 8"});
   expect_tree_error({"--node-width", "2", "--node-format", "quantised8"}, {"found 2", "4 or 8"});
-  expect_tree_error({"--stack-entries", "3"}, {"short stack", "found 3", "power of two"});
-  expect_tree_error({"--visits", "-1"}, {"visits", "found -1", "0 to 1024"});
-  expect_tree_error({"--leaf-triangles", "9"}, {"triangles a leaf", "found 9", "1 to 8"});
-  expect_tree_error({"--treelet-nodes", "0"}, {"nodes a treelet", "found 0", "1 to 1024"});
-  expect_tree_error({"--n", "9"}, {"n: found 9", "0 to 8"});
+  expect_tree_error({"--stack-entries", "3"}, {"--stack-entries: found '3'", "0, 1, 2, 4, 8, 16, 32"});
+  expect_tree_error({"--visits", "-1"}, {"--visits: found '-1'", "0 to 1024"});
+  expect_tree_error({"--leaf-triangles", "9"}, {"--leaf-triangles: found '9'", "1 to 8"});
+  expect_tree_error({"--treelet-nodes", "0"}, {"--treelet-nodes: found '0'", "1 to 1024"});
+  expect_tree_error({"--resident-nodes", "0"}, {"--resident-nodes: found '0'", "1 to 1024"});
+  expect_tree_error({"--n", "9"}, {"--n: found '9'", "0 to 8"});
 }
 
 TEST_F(CommandLineErrors, Chip) {
@@ -215,7 +217,7 @@ TEST_F(CommandLineErrors, NotesDoNotGoBeforeAnError) {
   write("scene.toml", scene.toml);
   write("mesh.obj", scene.obj);
   write("mesh.mtl", scene.mtl);
-  expect_error({"render", "scene.toml", "--n", "9"}, {"n: found 9"});
+  expect_error({"render", "scene.toml", "--n", "8", "--bin-blocks", "7"}, {"n: found 8"});
 }
 
 TEST_F(CommandLineErrors, UnwritableOutputsAreFoundBeforeTheRun) {

@@ -4,12 +4,14 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "model/config/chip_parameters.hpp"
 #include "tests/support/command_line.hpp"
 
@@ -43,7 +45,7 @@ TEST_F(CommandLine, RenderWritesEveryOutputAndNothingElse) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.error, "");
   for (const char* line : {"simulated time", "segments/s", "PE utilisation", "SIMD efficiency", "exposed PIO",
-                           "DDR bandwidth", "host time", "faster than the silicon"})
+                           "DDR bandwidth", "simulator time", "faster than the silicon"})
     EXPECT_NE(result.out.find(line), std::string::npos) << line << " in " << result.out;
   std::set<std::string> names;
   for (const std::string& name : files()) {
@@ -66,9 +68,9 @@ TEST_F(CommandLine, StatisticsHaveWhatEveryReaderNeeds) {
   EXPECT_GE(chip.at("segments").get<std::uint64_t>(), 96u);
   EXPECT_GT(chip.at("rays").get<std::uint64_t>(), chip.at("segments").get<std::uint64_t>());
   EXPECT_EQ(chip.at("image_sha256").get<std::string>().size(), 64u);
-  EXPECT_GT(chip.at("host").at("cpu_seconds").get<double>(), 0.0);
-  EXPECT_GT(chip.at("host").at("wall_seconds").get<double>(), 0.0);
-  EXPECT_GT(chip.at("host").at("peak_bytes").get<std::uint64_t>(), 1000000u);
+  EXPECT_GT(chip.at("simulator").at("cpu_seconds").get<double>(), 0.0);
+  EXPECT_GT(chip.at("simulator").at("wall_seconds").get<double>(), 0.0);
+  EXPECT_GT(chip.at("simulator").at("peak_bytes").get<std::uint64_t>(), 1000000u);
   const double clock_hz = chip.at("chip").at("clock_hz");
   EXPECT_DOUBLE_EQ(chip.at("simulated_seconds").get<double>(),
                    chip.at("simulated_cycles").get<double>() / clock_hz);
@@ -89,18 +91,18 @@ TEST_F(CommandLine, NativeRunHasTheSameImageAndNoTime) {
   EXPECT_EQ(native.count("chip"), 0u);
 }
 
-TEST_F(CommandLine, StatisticsOfTwoRunsDifferInTheHostOnly) {
+TEST_F(CommandLine, StatisticsOfTwoRunsDifferInTheSimulatorOnly) {
   json first = statistics({"--n", "2"});
   json second = statistics({"--n", "2"});
-  EXPECT_EQ(first.erase("host"), 1u);
-  second.erase("host");
+  EXPECT_EQ(first.erase("simulator"), 1u);
+  second.erase("simulator");
   EXPECT_EQ(first.dump(), second.dump());
 }
 
-TEST_F(CommandLine, CheckingHazardsChangesNothingButTheHostsTime) {
+TEST_F(CommandLine, CheckingHazardsChangesOnlyTheSimulatorsTime) {
   json plain = statistics({"--n", "3"});
   json checked = statistics({"--n", "3", "--check-hazards"});
-  plain.erase("host"), checked.erase("host");
+  plain.erase("simulator"), checked.erase("simulator");
   EXPECT_EQ(checked, plain);
   EXPECT_EQ(statistics({"--native", "--check-hazards"})["image_sha256"], plain["image_sha256"]);
 }
@@ -121,8 +123,31 @@ TEST_F(CommandLine, OptionsReachTheFirmwareAndTheChip) {
   }
   EXPECT_EQ(other.at("chip_preset"), "csx600_250mhz");
   EXPECT_EQ(other.at("chip").at("clock_hz").get<double>(), 250e6);
-  EXPECT_NE(other.at("chip_config").dump().find("777"), std::string::npos);
+  EXPECT_EQ(other.at("chip_config").at("pio").at("setup_cycles"), 777);
   EXPECT_NE(other.at("image_sha256"), plain.at("image_sha256"));
+}
+
+/// One table declares them: each has its help, its place in the statistics and its record of what was given.
+TEST_F(CommandLine, EveryFirmwareOptionReachesTheStatistics) {
+  const std::string help = run({"render", "--help"}).out;
+  const json plain = statistics({});
+  EXPECT_EQ(plain.at("firmware").size(), path_tracer::program_options().size() + 1) << "and the samples";
+  for (const path_tracer::ProgramOption& option : path_tracer::program_options()) {
+    std::string name = "--" + option.name;
+    std::replace(name.begin(), name.end(), '_', '-');
+    EXPECT_NE(help.find("\n  " + name + " "), std::string::npos) << name;
+    ASSERT_EQ(plain.at("firmware").count(option.name), 1u) << option.name;
+  }
+  const std::vector<std::vector<std::string>> given = {{"shadow_rays", "all"},
+                                                       {"max_survival", "0.5"},
+                                                       {"seed", "18446744073709551615"},
+                                                       {"sampler", "philox"}};
+  for (const auto& pair : given) {
+    std::string name = "--" + pair[0];
+    std::replace(name.begin(), name.end(), '_', '-');
+    const json recorded = statistics({name, pair[1]}).at("firmware").at(pair[0]);
+    EXPECT_EQ(recorded.is_string() ? recorded.get<std::string>() : recorded.dump(), pair[1]);
+  }
 }
 
 TEST_F(CommandLine, OutputReplacesAnOlderFile) {
@@ -154,7 +179,7 @@ TEST_F(CommandLine, TrianglesWithoutAreaAreLeftOutWithANote) {
   EXPECT_EQ(result.error, "note: scene.toml: 1 triangles without area were left out\n");
 }
 
-/// By what Linux says of the process; then a little longer, into the run.
+/// Waits until Linux says that the process catches SIGINT, then a little longer, into the run.
 void wait_until_interrupts_are_caught(pid_t child) {
   constexpr unsigned long kInterrupt = 1ul << (SIGINT - 1);
   unsigned long caught = 0;
@@ -184,22 +209,33 @@ TEST_F(CommandLine, InterruptEndsARunCleanly) {
   }
 }
 
-TEST_F(CommandLine, ParamsListsEveryParameter) {
+TEST_F(CommandLine, ParamsListsEveryParameterAndOption) {
   const CommandResult result = run({"params", "--json", "params.json"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.error, "");
   const json list = json::parse(read("params.json"));
   std::set<std::string> in_json;
   for (const json& parameter : list) {
-    for (const char* member : {"key", "value", "unit", "confidence", "meaning"})
+    const bool is_option = parameter.at("key").get<std::string>().rfind("firmware.", 0) == 0;
+    for (const char* member : {"unit", "meaning", "default", "allowed"})
       EXPECT_EQ(parameter.count(member), 1u) << parameter;
+    for (const char* member : {"value", "confidence"})
+      EXPECT_EQ(parameter.count(member), is_option ? 0u : 1u);
+    EXPECT_EQ(parameter.count("group"), is_option ? 1u : 0u) << parameter;
     in_json.insert(parameter.at("key").get<std::string>());
   }
   EXPECT_GE(in_json.size(), 40u);
-  EXPECT_EQ(in_json.size(), model::parameter_table().size());
+  EXPECT_EQ(in_json.size(), model::parameter_table().size() + path_tracer::program_options().size());
+  const std::string markdown = run({"params", "--markdown"}).out;
+  for (const path_tracer::ProgramOption& option : path_tracer::program_options()) {
+    EXPECT_EQ(in_json.count("firmware." + option.name), 1u) << option.name;
+    EXPECT_NE(result.out.find("\nfirmware." + option.name + " "), std::string::npos) << option.name;
+    EXPECT_NE(markdown.find("\n| `firmware." + option.name + "` | "), std::string::npos) << option.name;
+  }
   for (const model::ParameterInfo& parameter : model::parameter_table()) {
     EXPECT_EQ(in_json.count(std::string(parameter.key)), 1u) << parameter.key;
     EXPECT_NE(result.out.find(std::string(parameter.key)), std::string::npos) << parameter.key;
+    EXPECT_NE(markdown.find("\n| `" + parameter.key + "` | "), std::string::npos) << parameter.key;
   }
 }
 

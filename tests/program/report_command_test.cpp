@@ -140,9 +140,14 @@ TEST_F(ReportCommand, BadInput) {
   write("x.json", "hello");
   expect_error({"x.json"}, {"x.json", "no JSON"});
   write("x.json", "{\"format\": \"csx600-statistics-0\"}");
-  expect_error({"x.json"}, {"x.json", "'csx600-statistics-0'", "csx600-statistics-1", "csx600-sweep-1"});
-  write("x.json", "{\"format\": \"csx600-statistics-1\"}");
+  expect_error({"x.json"}, {"x.json", "'csx600-statistics-0'", "csx600-statistics-2", "csx600-sweep-1"});
+  write("x.json", "{\"format\": \"csx600-statistics-2\"}");
   expect_error({"x.json"}, {"x.json", "scene"});
+  write("out/sweep.json",
+        "{\"format\": \"csx600-sweep-1\", \"keys\": [], \"axes\": [], \"base\": {}, \"points\": "
+        "[{\"inputs\": {}, "
+        "\"status\": \"done\", \"results\": {\"chip.host_link.host_dmas\": 3}}]}");
+  expect_error({"out"}, {"out/sweep.json", "chip.host_link.host_dmas", "chip.host_link.transfers"});
   make_run();
   write("no.png", "hello");
   expect_error({"run.json", "--image", "no.png"}, {"--image", "no.png", "PNG"});

@@ -32,7 +32,7 @@ TEST_F(StatisticsCommands, FormFollowsTheSuffix) {
   render({"--stats", "a.json"});
   render({"--stats", "a.csv"});
   render({"--stats", "a.txt"});
-  EXPECT_NE(read("a.json").find("\"format\": \"csx600-statistics-1\""), std::string::npos);
+  EXPECT_NE(read("a.json").find("\"format\": \"csx600-statistics-2\""), std::string::npos);
   EXPECT_EQ(read("a.csv").rfind("key,unit,value,meaning\n", 0), 0u);
   EXPECT_NE(read("a.csv").find("\nchip.energy.watts,W,"), std::string::npos);
   EXPECT_NE(read("a.txt").find("\nchip.energy\n  joules "), std::string::npos);
@@ -69,14 +69,14 @@ TEST_F(StatisticsCommands, DescribePrintsNameUnitMeaning) {
                "stats: found a file and --describe, allowed is either a statistics file or --describe");
 }
 
-TEST_F(StatisticsCommands, EqualRunsCompareEqualWhateverTheHostsTimes) {
+TEST_F(StatisticsCommands, EqualRunsCompareEqualWhateverTheSimulatorsTimes) {
   render({"--stats", "a.json"});
   render({"--stats", "b.json"});
   EXPECT_NE(read("a.json"), read("b.json"));
   const CommandResult result = run({"compare", "a.json", "b.json"});
   EXPECT_EQ(result.exit_code, 0) << result.error;
   EXPECT_EQ(result.out.rfind("equal: ", 0), 0u) << result.out;
-  EXPECT_EQ(run({"compare", "a.json", "b.json", "--host"}).exit_code, 1);
+  EXPECT_EQ(run({"compare", "a.json", "b.json", "--simulator"}).exit_code, 1);
 }
 
 TEST_F(StatisticsCommands, OldNamesAreRefusedWithTheirNewOnes) {
@@ -133,7 +133,15 @@ TEST_F(StatisticsCommands, WrongUsageAndFilesEndWithTwo) {
   other["format"] = "csx600-statistics-0";
   write("old.json", other.dump());
   expect_error({"compare", "a.json", "old.json"}, 2,
-               "old.json: format: found 'csx600-statistics-0', allowed is 'csx600-statistics-1'");
+               "old.json: format: found 'csx600-statistics-0', allowed is 'csx600-statistics-2'");
+  other["format"] = "csx600-statistics-1";
+  write("old.json", other.dump());
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"stats", "old.json"},
+                                                  {"compare", "a.json", "old.json"},
+                                                  {"report", "old.json"}})
+    expect_error(command, 2,
+                 "old.json: format: found 'csx600-statistics-1', allowed is 'csx600-statistics-2'; an older "
+                 "csx600 wrote it, with other keys: run the render again");
   for (const char* tolerance :
        {"chip.*", "chip.*=", "=0.1", "chip.*=x", "chip.*=-1", "chip.*=nan", "chip.*=1y"})
     expect_error({"compare", "a.json", "a.json", "--tolerance", tolerance}, 2,
@@ -144,17 +152,15 @@ TEST_F(StatisticsCommands, WrongUsageAndFilesEndWithTwo) {
 
 TEST_F(StatisticsCommands, GoldenUpdatesWithOneCommandAndShowsWhatMoved) {
   const auto grid = [](int samples) {
-    return "width = 6\nheight = 4\nsamples = " + std::to_string(samples) + "\n[[grid]]\nscenes = [\"" +
-           kCornellBox +
-           "\"]\nchips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = [\"both\"]\n"
-           "timings = [\"lt\"]\n";
+    return "width = 6\nheight = 4\nsamples = " + std::to_string(samples) + "\n[[grid]]\nscene = [\"" +
+           kCornellBox + "\"]\nchip = [\"csx600\"]\nfirmware.program = [\"full\"]\ntiming = [\"lt\"]\n";
   };
   write("kept/grid.toml", grid(1));
-  EXPECT_EQ(run({"golden", "kept"}).exit_code, 1) << "nothing is kept yet";
+  EXPECT_EQ(run({"golden", "kept"}).exit_code, 1) << "no table is kept yet";
   const CommandResult first = run({"golden", "kept", "--update"});
   EXPECT_EQ(first.exit_code, 0) << first.error;
   EXPECT_NE(first.out.find("new run: cornell_box-csx600 full n1 both lt"), std::string::npos);
-  EXPECT_EQ(run({"golden", "kept"}).out, "1 runs, nothing moved\n");
+  EXPECT_EQ(run({"golden", "kept"}).out, "1 runs, no counter moved\n");
   write("kept/grid.toml", grid(2));
   const CommandResult moved = run({"golden", "kept"});
   EXPECT_EQ(moved.exit_code, 1);

@@ -140,9 +140,12 @@ TEST_F(SweepCommand, BadInput) {
   expect_error({"sweep", "s.toml", "-o", "/proc/nowhere"}, {"/proc/nowhere", "output directory"});
   write("file", "");
   expect_error({"sweep", "s.toml", "-o", "file"}, {"file", "directory"});
-  write("other/points.jsonl", "{\"format\":\"csx600-sweep-points-1\",\"build\":\"0\"}\n");
+  write("other/points.jsonl", "{\"format\":\"csx600-sweep-points-2\",\"build\":\"0\"}\n");
   expect_error({"sweep", "s.toml", "-o", "other"}, {"other/points.jsonl:1", "another build"});
-  EXPECT_EQ(files(), (Words{"bad.toml", "file", "other/points.jsonl", "s.toml"}));
+  write("old/points.jsonl", "{\"format\":\"csx600-sweep-points-1\",\"build\":\"0\"}\n");
+  expect_error({"sweep", "s.toml", "-o", "old"},
+               {"old/points.jsonl:1", "csx600-sweep-points-1", "another directory"});
+  EXPECT_EQ(files(), (Words{"bad.toml", "file", "old/points.jsonl", "other/points.jsonl", "s.toml"}));
 }
 
 }  // namespace sweep_command_test

@@ -58,7 +58,7 @@ TEST_F(ValidateCommand, FiguresAreThoseOfTheCosts) {
   // A sample: half of (2 random numbers of 40, 2 conversions of 12, log 90, -2 x 4, sqrt 50, 2 pi x 4,
   // sine and cosine 110, 2 products of 4), then 2 x 4 + exp 90 + 4 + 4, maximum 6, sum 4.
   EXPECT_NEAR(found.at("Monte Carlo, European option"), (80 + 24 + 90 + 4 + 50 + 4 + 110 + 8) / 2.0 + 116, 1);
-  // Of 64 rows of B and a tile, 88 of 96 PEs do 8 multiply-adds a row; a row takes 12.25 cycles, the end 26.
+  // A tile takes 64 rows of B; 88 of 96 PEs do 8 multiply-adds a row; a row takes 12.25 cycles, the end 26.
   // For a row, programmed I/O moves 160 + 2 x 88 words in the time of 40 tiles, in the way of SRAM accesses
   // of 5 cycles a row and 48 a tile. Control and the ends of blocks come on top.
   const double tile = 12.25 * 64 + 26;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/film/error_curve.hpp"
 #include "testbench/film/light_pixels.hpp"
-#include "testbench/run/program_names.hpp"
 #include "testbench/run/render.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
@@ -33,9 +33,8 @@ struct Combination {
   int roulette_start;
 
   std::string name() const {
-    return std::string(testbench::sampler_name(sampler)) + ", " +
-           testbench::light_sampling_name(light_sampling) + ", roulette from " +
-           std::to_string(roulette_start);
+    return std::string(path_tracer::name_of(sampler)) + ", " + path_tracer::name_of(light_sampling) +
+           ", roulette from " + std::to_string(roulette_start);
   }
   RenderOptions options(int samples, std::uint64_t seed) const {
     RenderOptions result = render_options(Program::full, samples);

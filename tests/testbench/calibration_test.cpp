@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <string>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "model/config/chip_presets.hpp"
 #include "testbench/paper/paper_alternatives.hpp"
 #include "testbench/system/error.hpp"
@@ -83,7 +84,7 @@ TEST(Calibration, MeetsTheFittedCellsAndPredictsTheOthers) {
 TEST(Calibration, PredictionsHaveTheStructureOfTheTables) {
   const Calibration result = calibrate(small_paper(), small_options());
   for (const Program program : testbench::kPaperPrograms) {
-    SCOPED_TRACE(testbench::program_name(program));
+    SCOPED_TRACE(path_tracer::name_of(program));
     const auto of = [&](const char* label) { return seconds(result, label, program); };
     EXPECT_LT(of("n = 1"), 0.9 * of("n = 0"));
     EXPECT_GE(of("n = 2"), of("n = 1"));

@@ -241,11 +241,11 @@ TEST_F(CountersOfRuns, FilesThatAreNoStatisticsAreRefusedByName) {
   EXPECT_EQ(refusal("[1, 2]"), not_json);
   for (const double share : {0.1, 0.5, 0.99})
     EXPECT_EQ(refusal(whole.substr(0, std::size_t(share * double(whole.size())))), not_json);
-  EXPECT_EQ(refusal("{}"), "run.json: format: found 'no format', allowed is 'csx600-statistics-1'");
+  EXPECT_EQ(refusal("{}"), "run.json: format: found 'no format', allowed is 'csx600-statistics-2'");
   ordered_json other = ordered_json::parse(whole);
   other["format"] = "csx600-statistics-9";
   EXPECT_EQ(refusal(other.dump()),
-            "run.json: format: found 'csx600-statistics-9', allowed is 'csx600-statistics-1'");
+            "run.json: format: found 'csx600-statistics-9', allowed is 'csx600-statistics-2'");
   other = ordered_json::parse(whole);
   other["chip"]["pio"].erase("setup_cycles");
   EXPECT_EQ(refusal(other.dump()),

@@ -31,7 +31,7 @@ class Golden : public testing::Test {
   }
   GoldenGrid grid(const std::string& text) const {
     write("grid.toml", text);
-    return testbench::read_golden_grid(directory_, {});
+    return testbench::read_golden_grid(directory_);
   }
   std::string refusal(const std::string& text) const {
     try {
@@ -48,13 +48,14 @@ class Golden : public testing::Test {
 const std::string kHead = "width = 6\nheight = 4\nsamples = 1\n";
 
 std::string product(const std::string& more) {
-  return "[[grid]]\nscenes = [\"" + std::string(CSX600_SCENES_DIR) + "/cornell_box\"]\n" + more;
+  return "[[grid]]\nscene = [\"" + std::string(CSX600_SCENES_DIR) + "/cornell_box\"]\n" + more;
 }
 const std::string kTwoChips = product(
-    "chips = [\"csx600\", \"paper\"]\nprograms = [\"segments\", \"full\"]\nn = [0, 2]\n"
-    "buffers = [\"loads\"]\ntimings = [\"lt\", \"at\"]\n");
+    "chip = [\"csx600\", \"paper\"]\nfirmware.program = [\"segments\", \"full\"]\nfirmware.n = [0, 2]\n"
+    "firmware.buffer = [\"loads\"]\ntiming = [\"lt\", \"at\"]\n");
 const std::string kOneRun = product(
-    "chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = [\"both\"]\ntimings = [\"lt\"]\n");
+    "chip = [\"csx600\"]\nfirmware.program = [\"full\"]\nfirmware.n = [1]\nfirmware.buffer = "
+    "[\"both\"]\ntiming = [\"lt\"]\n");
 
 TEST_F(Golden, GridIsEveryCombination) {
   const GoldenGrid read = grid(kHead + kTwoChips + kOneRun + kTwoChips);  // each run appears once
@@ -76,36 +77,69 @@ TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
   EXPECT_EQ(refusal("height = 4\nsamples = 1\n" + kOneRun),
             "grid.toml: width: found none, allowed is an integer from 1 to 10000");
   EXPECT_EQ(refusal(kHead), "grid.toml: grid: found none, allowed is one [[grid]] or more");
-  EXPECT_EQ(refusal("colour = 1\n" + kHead + kOneRun).rfind("grid.toml: colour: found an unknown key", 0),
+  EXPECT_EQ(refusal("colour = 1\n" + kHead + kOneRun)
+                .rfind("grid.toml:1: colour: found an unknown key, allowed is width, ", 0),
             0u);
-  EXPECT_EQ(refusal(kHead + product("chips = [\"csx600\"]\nprograms = [\"fast\"]\nn = [1]\nbuffers = "
-                                    "[\"both\"]\ntimings = [\"lt\"]\n")),
-            "grid.toml: programs: found fast, allowed is one of direct, full, segments");
-  EXPECT_EQ(refusal(kHead + product("chips = [\"csx6\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = "
-                                    "[\"both\"]\ntimings = [\"lt\"]\n"))
-                .rfind("grid.toml: ", 0),
+  EXPECT_EQ(refusal(kHead + "[[grid]]\nchip = [\"csx600\"]\n"),
+            "grid.toml:4: scene: found none, allowed is a list of scenes");
+  const auto of_key = [&](const std::string& key) { return refusal(kHead + product(key + "\n")); };
+  EXPECT_EQ(of_key("firmware.program = [\"fast\"]"),
+            "grid.toml:6: firmware.program: found 'fast'; allowed: one of segments, direct, full");
+  EXPECT_EQ(of_key("chip = [\"csx6\"]").rfind("grid.toml:6: unknown preset 'csx6'; allowed: ", 0), 0u);
+  EXPECT_EQ(of_key("firmware.n = [0, 9]"),
+            "grid.toml:6: firmware.n: found '9'; allowed: an integer from 0 to 8");
+  EXPECT_EQ(of_key("firmware.n = 1"), "grid.toml:6: firmware.n: found '1', allowed is a list of values");
+  EXPECT_EQ(of_key("firmware.n = []"),
+            "grid.toml:6: firmware.n: found an empty list, allowed is a list of values");
+  EXPECT_EQ(of_key("firmware.n = [[1]]"),
+            "grid.toml:6: firmware.n: found an array in a list, allowed is values");
+  EXPECT_EQ(of_key("firmware.node_width = [3]"),
+            "grid.toml:6: firmware.node_width: found '3'; allowed: one of 2, 4, 8");
+  EXPECT_EQ(of_key("firmware.node_format = [\"fp16\"]"),
+            "grid.toml:6: firmware.node_format: found 'fp16'; allowed: one of fp64, fp32, quantised8");
+  EXPECT_EQ(of_key("firmware.traversal = [\"magic\"]")
+                .rfind("grid.toml:6: firmware.traversal: found 'magic'; allowed: one of brute_force, ", 0),
             0u);
-  EXPECT_EQ(refusal(kHead + product("chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [\"1\"]\nbuffers = "
-                                    "[\"both\"]\ntimings = [\"lt\"]\n")),
-            "grid.toml: n: found no list or one with other values, allowed is a list of strings, or of "
-            "integers for n");
-  const auto of_tree = [&](const std::string& key) {
-    return refusal(kHead + product("chips = [\"csx600\"]\nprograms = [\"full\"]\nn = [1]\nbuffers = "
-                                   "[\"both\"]\ntimings = [\"lt\"]\n" +
-                                   key));
-  };
-  EXPECT_EQ(of_tree("node_widths = [3]\n"), "grid.toml: node_widths: found 3, allowed is one of 2, 4, 8");
-  EXPECT_EQ(of_tree("node_formats = [\"fp16\"]\n"),
-            "grid.toml: node_formats: found fp16, allowed is one of fp64, fp32, quantised8");
-  EXPECT_EQ(of_tree("traversals = [\"magic\"]\n").rfind("grid.toml: traversals: found magic, allowed is", 0),
-            0u);
+  EXPECT_EQ(of_key("samples = [2]"),
+            "grid.toml:6: samples: found it in a [[grid]], allowed is width, height and samples of the whole "
+            "file, above");
+  EXPECT_EQ(of_key("firmware.depth = [2]").rfind("grid.toml:6: found the key 'firmware.depth'", 0), 0u);
 }
 
-TEST_F(Golden, TreesHaveAWayAFormatAndAWidth) {
-  const GoldenGrid read = grid(kHead + product("chips = [\"csx600\"]\nprograms = [\"segments\"]\nn = [1]\n"
-                                               "buffers = [\"both\"]\ntimings = [\"lt\"]\n"
-                                               "traversals = [\"brute_force\", \"refill\"]\n"
-                                               "node_formats = [\"fp64\"]\nnode_widths = [2, 8]\n"));
+TEST_F(Golden, NamesOfEarlierGridsAreRefusedWithTheNewOnes) {
+  for (const auto& [old, now] : {std::pair("scenes = [\"a\"]", "scene"),
+                                 {"chips = [\"csx600\"]", "chip"},
+                                 {"programs = [\"full\"]", "firmware.program"},
+                                 {"n = [1]", "firmware.n"},
+                                 {"buffers = [\"both\"]", "firmware.buffer"},
+                                 {"timings = [\"lt\"]", "timing"},
+                                 {"traversals = [\"refill\"]", "firmware.traversal"},
+                                 {"node_formats = [\"fp32\"]", "firmware.node_format"},
+                                 {"node_widths = [4]", "firmware.node_width"}}) {
+    const std::string key = std::string(old).substr(0, std::string(old).find(' '));
+    EXPECT_EQ(refusal(kHead + product(std::string(old) + "\n")),
+              "grid.toml:6: " + key + ": found a name that is no longer used, allowed is " + now);
+  }
+}
+
+/// Every option of the firmware and every parameter of the chip can be a key; the run's name says which.
+TEST_F(Golden, KeysAreThoseOfSweeps) {
+  const GoldenGrid read = grid(kHead + product("firmware.visits = [2, 3]\nfirmware.traversal = [\"refill\"]\n"
+                                               "pio.setup_cycles = [99]\n"));
+  ASSERT_EQ(read.runs.size(), 2u);
+  EXPECT_EQ(read.runs[1].name, "full n1 both lt refill fp32 4 firmware.visits=3 pio.setup_cycles=99");
+  EXPECT_EQ(read.runs[1].file, "cornell_box-csx600.csv");
+  EXPECT_EQ(read.runs[1].options.chip.pio.setup_cycles, 99);
+  EXPECT_EQ(read.runs[1].options.program.tree.visits, 3);
+  EXPECT_EQ(read.runs[1].given.count("visits"), 1u) << "it is not chosen again";
+}
+
+TEST_F(Golden, TreesHaveATraversalAFormatAndAWidth) {
+  const GoldenGrid read =
+      grid(kHead + product("chip = [\"csx600\"]\nfirmware.program = [\"segments\"]\nfirmware.n = [1]\n"
+                           "firmware.buffer = [\"both\"]\ntiming = [\"lt\"]\n"
+                           "firmware.traversal = [\"brute_force\", \"refill\"]\n"
+                           "firmware.node_format = [\"fp64\"]\nfirmware.node_width = [2, 8]\n"));
   ASSERT_EQ(read.runs.size(), 3u);
   EXPECT_EQ(read.runs[0].name, "segments n1 both lt");
   EXPECT_EQ(read.runs[1].name, "segments n1 both lt refill fp64 2");
@@ -129,7 +163,7 @@ TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {
   testbench::write_golden(directory_, found);
   EXPECT_EQ(testbench::golden_moves(testbench::read_golden(directory_), found), "");
   EXPECT_FALSE(std::filesystem::exists(directory_ / "cornell_box-gone.csv"));
-  EXPECT_EQ(read("cornell_box-csx600.csv").find("\nhost."), std::string::npos);
+  EXPECT_EQ(read("cornell_box-csx600.csv").find("\nsimulator."), std::string::npos);
   EXPECT_NE(read("cornell_box-csx600.csv").find("\nchip.control_unit.cycles_by_cause.poly,"),
             std::string::npos);
   EXPECT_NE(read("cornell_box-csx600.csv").find("\nimage_sha256,"), std::string::npos);

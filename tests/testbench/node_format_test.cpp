@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/bvh/build_bvh.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -20,10 +21,6 @@ using testbench::decode_reference;
 using testbench::encode_node;
 
 constexpr NodeFormat kFormats[] = {NodeFormat::fp64, NodeFormat::fp32, NodeFormat::quantised8};
-
-std::string name_of(NodeFormat format) {
-  return format == NodeFormat::fp64 ? "fp64" : format == NodeFormat::fp32 ? "fp32" : "quantised8";
-}
 
 std::vector<std::uint8_t> encode(const BvhNode& node, const NodeLayout& layout) {
   std::vector<std::uint8_t> bytes(std::size_t(layout.node_bytes()), 0xee);
@@ -131,7 +128,7 @@ TEST_P(NodeFormats, AreWholeWords) {
 INSTANTIATE_TEST_SUITE_P(Formats, NodeFormats,
                          testing::Combine(testing::ValuesIn(kFormats), testing::Values(2, 4, 8)),
                          [](const auto& suite) {
-                           return name_of(std::get<0>(suite.param)) + "_width" +
+                           return std::string(path_tracer::name_of(std::get<0>(suite.param))) + "_width" +
                                   std::to_string(std::get<1>(suite.param));
                          });
 

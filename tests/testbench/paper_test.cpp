@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/path_tracer/program/program_options.hpp"
+
 namespace paper_test {
 
 using path_tracer::Program;
@@ -83,9 +85,9 @@ TEST(Paper, ProgramCastsAShadowRayForEverySegment) {
 }
 
 TEST(Paper, ProgramsHaveTheNamesOfTheCommandLine) {
-  EXPECT_STREQ(testbench::program_name(Program::segments), "segments");
-  EXPECT_STREQ(testbench::program_name(Program::direct), "direct");
-  EXPECT_STREQ(testbench::program_name(Program::full), "full");
+  EXPECT_STREQ(path_tracer::name_of(Program::segments), "segments");
+  EXPECT_STREQ(path_tracer::name_of(Program::direct), "direct");
+  EXPECT_STREQ(path_tracer::name_of(Program::full), "full");
 }
 
 }  // namespace paper_test

@@ -33,6 +33,8 @@ TEST(RenamedKeys, KeysBelowARenamedOneAreRenamedWithIt) {
   EXPECT_EQ(new_name_of("chip.host_link.host_dmas_x"), "");
   EXPECT_EQ(new_name_of("chip.host_link.transfers"), "");
   EXPECT_EQ(new_name_of("host_link.host_dmas"), "");
+  EXPECT_EQ(new_name_of("host.cpu_seconds"), "simulator.cpu_seconds");
+  EXPECT_EQ(new_name_of("chip_config.host.bytes_per_second"), "");
   EXPECT_EQ(new_name_of(""), "");
 }
 

@@ -32,7 +32,7 @@ class Replay : public test_support::SystemCFixture {
   /// The statistics without the simulator's times.
   static std::string statistics(const RenderOptions& options, const RenderResult& result) {
     nlohmann::ordered_json json = testbench::render_statistics({"scene", options, false}, result);
-    json.erase("host");
+    json.erase("simulator");
     return json.dump(1);
   }
   static std::string in_full(const Scene& scene, const RenderOptions& options) {

@@ -121,6 +121,12 @@ TEST_F(SweepFileTest, BadInputIsNamedWithItsLine) {
   expect_error("[[axis]]\nfirmware.n = [9]\n", {".toml:2", "firmware.n", "'9'", "0 to 8"});
   expect_error("[[axis]]\nfirmware.program = [\"quick\"]\n",
                {"firmware.program", "'quick'", "segments, direct, full"});
+  expect_error("[[axis]]\nfirmware.stack_entries = [4, 3]\n",
+               {".toml:2", "firmware.stack_entries", "'3'", "0, 1, 2, 4, 8, 16, 32"});
+  expect_error("firmware.seed = -1\n", {".toml:1", "firmware.seed", "'-1'", "0 to 18446744073709551615"});
+  expect_error("firmware.max_survival = 1.0\n", {".toml:1", "firmware.max_survival", "'1'", "below 1"});
+  expect_error("firmware.depth = 1\n", {".toml:1", "'firmware.depth'", "firmware.program"});
+  expect_error("chip.host_link.host_dmas = 1\n", {".toml:1", "chip.host_link.transfers"});
   expect_error("firmware.n = [1, 2]\n", {".toml:1", "firmware.n", "an array", "[[axis]]"});
   expect_error("firmware.n = 1.5\n", {"firmware.n", "'1.5'"});
   expect_error("chip = \"csx601\"\n", {".toml:1", "csx601", "paper"});

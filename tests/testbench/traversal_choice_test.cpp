@@ -78,13 +78,13 @@ TEST(ResidentNodes, AreAsManyAsFit) {
 }
 
 /// `program` with its tree reduced until it fits.
-ProgramConfig fitted(ProgramConfig program, const testbench::TreeWishes& wishes = {},
+ProgramConfig fitted(ProgramConfig program, const testbench::TreeOverrides& overrides = {},
                      std::size_t triangles = 1000) {
-  program.tree = testbench::tree_that_fits(triangles, program, kChip, wishes);
+  program.tree = testbench::tree_that_fits(triangles, program, kChip, overrides);
   return program;
 }
 
-TEST(TreeThatFits, IsTheOneWantedIfThatFits) {
+TEST(TreeThatFits, IsTheSuitedOneIfThatFits) {
   for (const Traversal traversal : {Traversal::temporary_bin, Traversal::refill, Traversal::packets}) {
     ProgramConfig program;
     program.traversal = traversal;
@@ -99,9 +99,9 @@ TEST(TreeThatFits, HasAShorterStackThenSmallerTreelets) {
   program.traversal = Traversal::temporary_bin;
   program.tree.resident_nodes = 1;
   program.n = 2;
-  testbench::TreeWishes floats;
+  testbench::TreeOverrides floats;
   floats.node_format = path_tracer::NodeFormat::fp32;
-  testbench::TreeWishes treelets_of_four = floats;
+  testbench::TreeOverrides treelets_of_four = floats;
   treelets_of_four.treelet_nodes = 4;
   const ProgramConfig shorter = fitted(program, treelets_of_four);
   EXPECT_EQ(shorter.tree.treelet_nodes, 4);
@@ -119,13 +119,13 @@ TEST(TreeThatFits, HasAShorterStackThenSmallerTreelets) {
   EXPECT_GE(smaller.tree.stack_entries, 1);
 }
 
-TEST(TreeThatFits, LeavesWishesAlone) {
+TEST(TreeThatFits, LeavesOverridesAlone) {
   ProgramConfig program;
   program.traversal = Traversal::temporary_bin;
   program.n = 3;
-  const ProgramConfig wished = fitted(program, {2, 4});
-  EXPECT_EQ(wished.tree.treelet_nodes, 2);
-  EXPECT_EQ(wished.tree.stack_entries, 4);
+  const ProgramConfig given = fitted(program, {2, 4});
+  EXPECT_EQ(given.tree.treelet_nodes, 2);
+  EXPECT_EQ(given.tree.stack_entries, 4);
   EXPECT_EQ(fitted(program, {{}, 1}).tree.stack_entries, 1);
   program.n = 1;
   program.tree.resident_nodes = 64;  // more than fit with any tree
@@ -134,17 +134,17 @@ TEST(TreeThatFits, LeavesWishesAlone) {
 }
 
 /// The user's options enter the estimate by which a traversal is chosen.
-TEST(TreeWishes, ChangeTheEstimate) {
+TEST(TreeOverrides, ChangeTheEstimate) {
   const ProgramConfig program;
   const path_tracer::TreeShape& tree = program.tree;
-  const path_tracer::TreeShape large = testbench::wished_tree(program, {16});
+  const path_tracer::TreeShape large = testbench::overridden_tree(program, {16});
   EXPECT_EQ(large.treelet_nodes, 16);
-  EXPECT_EQ(testbench::wished_tree(program, {}).treelet_nodes, tree.treelet_nodes);
+  EXPECT_EQ(testbench::overridden_tree(program, {}).treelet_nodes, tree.treelet_nodes);
   EXPECT_GT(testbench::estimate_traversal(1000000, large, kChip).tree,
             testbench::estimate_traversal(1000000, tree, kChip).tree);
 }
 
-TEST(TreeThatFits, IsTheOneWishedForEvenIfItIsFarTooLarge) {
+TEST(TreeThatFits, IsTheGivenOneEvenIfItIsFarTooLarge) {
   ProgramConfig program;
   program.traversal = Traversal::refill;
   program.n = 8;
@@ -167,12 +167,12 @@ TEST(TreeThatFits, HasWideNodesWhereTrianglesAreMany) {
   EXPECT_EQ(fitted(program, {}, kMany).tree.layout.width, 4);
 }
 
-TEST(TreeThatFits, HasTheFormatThatSuitsTheWayOrIsWishedFor) {
+TEST(TreeThatFits, HasTheFormatThatSuitsTheTraversalOrIsGiven) {
   using path_tracer::NodeFormat;
   ProgramConfig program;
-  const auto format = [&](Traversal traversal, const testbench::TreeWishes& wishes) {
+  const auto format = [&](Traversal traversal, const testbench::TreeOverrides& overrides) {
     program.traversal = traversal;
-    return fitted(program, wishes, 1000000).tree.layout.format;
+    return fitted(program, overrides, 1000000).tree.layout.format;
   };
   EXPECT_EQ(format(Traversal::refill, {}), NodeFormat::quantised8);
   EXPECT_EQ(format(Traversal::temporary_bin, {}), NodeFormat::quantised8);
@@ -192,7 +192,7 @@ TEST(TreeThatFits, HasNarrowNodesWhereWideOnesDoNotFit) {
   EXPECT_TRUE(fits(narrow));
 }
 
-TEST(TreeThatFits, HasTheWidthAndVisitsWishedFor) {
+TEST(TreeThatFits, HasTheGivenWidthAndVisits) {
   ProgramConfig program;
   program.traversal = Traversal::refill;
   const ProgramConfig binary = fitted(program, {{}, {}, 2, 5}, 1000000);

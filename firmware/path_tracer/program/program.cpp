@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/path_tracer/program/program_options.hpp"
+
 namespace path_tracer {
 namespace {
 
@@ -31,23 +33,6 @@ void require(bool ok, const std::string& what, const std::string& found, const s
 
 }  // namespace
 
-void validate(const TreeShape& tree) {
-  const auto range = [](const std::string& what, int value, int least, int most) {
-    require(value >= least && value <= most, what, std::to_string(value),
-            std::to_string(least) + " to " + std::to_string(most));
-  };
-  require(tree.layout.has_kernel(), "children a node", std::to_string(tree.layout.width),
-          tree.layout.format == NodeFormat::quantised8 ? "4 or 8 of quantised8" : "2, 4 or 8");
-  range("triangles a leaf", tree.leaf_triangles, 1, kMaxLeafTriangles);
-  range("nodes a treelet", tree.treelet_nodes, 1, kMaxTreeletNodes);
-  range("resident nodes", tree.resident_nodes, 1, kMaxTreeletNodes);
-  range("entries of the short stack", tree.stack_entries, 0, kMaxStackEntries);
-  range("visits a turn", tree.visits, 0, kMaxVisits);
-  require((tree.stack_entries & (tree.stack_entries - 1)) == 0, "entries of the short stack",
-          std::to_string(tree.stack_entries),
-          "0 or a power of two up to " + std::to_string(kMaxStackEntries));
-}
-
 void PassCounts::add(std::uint64_t count) {
   if (passes_ == passes_per_interval_ * kMaxIntervals) {
     for (std::size_t i = 0; i < kMaxIntervals / 2; ++i)
@@ -61,24 +46,17 @@ void PassCounts::add(std::uint64_t count) {
 }
 
 void validate(const ProgramConfig& config) {
-  require(config.n >= 0 && config.n <= kMaxBuffers, "n", std::to_string(config.n),
-          "0 to " + std::to_string(kMaxBuffers));
-  require(config.bin_blocks >= 1 && config.bin_blocks <= kMaxBinBlocks, "bin length",
-          std::to_string(config.bin_blocks) + " blocks", "1 to " + std::to_string(kMaxBinBlocks));
+  for (const ProgramOption& option : program_options()) {
+    if (option.group == OptionGroup::tree && !config.uses_tree()) continue;
+    const OptionValue value = option.read(config);
+    require(is_allowed(option, value), option.name, value_text(value), allowed_text(option));
+  }
   // Paper, section 3.3: "the bins must be at least n * (number of PEs) in length".
   require(config.n <= config.bin_blocks, "n", std::to_string(config.n),
           "at most the bin length, " + std::to_string(config.bin_blocks) + " blocks");
-  require(config.slot_vertices >= kVerticesPerLoad && config.slot_vertices <= kMaxSlotVertices &&
-              config.slot_vertices % kVerticesPerLoad == 0,
-          "vertices a path slot", std::to_string(config.slot_vertices),
-          "a positive multiple of " + std::to_string(kVerticesPerLoad) + " up to " +
-              std::to_string(kMaxSlotVertices));
-  require(config.roulette_start >= 0, "roulette start", std::to_string(config.roulette_start),
-          "0 or more segments");
-  require(config.pixel_stride >= 1, "pixel stride", std::to_string(config.pixel_stride), "1 or more");
-  if (config.uses_tree()) validate(config.tree);
-  require(config.max_survival > 0 && config.max_survival < 1, "largest survival probability",
-          std::to_string(config.max_survival), "above 0 and below 1");
+  const NodeLayout& layout = config.tree.layout;
+  require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
+          "4 or 8 with node_format quantised8");
 }
 
 int traversal_bin_blocks(const ProgramConfig& config) {

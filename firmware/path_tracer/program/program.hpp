@@ -92,9 +92,9 @@ class ProgramError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws ProgramError that names the argument, the value and what is allowed.
+/// Throws ProgramError that names the option, the value and what is allowed. A tree's options are looked at
+/// only where there is a tree.
 void validate(const ProgramConfig& config);
-void validate(const TreeShape& tree);
 
 /// What decides how much mono memory a scene takes.
 struct SceneCounts {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,30 +16,34 @@ struct Setting {
   std::string origin;  ///< "sweep.toml:7"
 };
 
-/// Everything that makes a run, as far as keys reach.
+/// Everything about a run that a key can set.
 struct RunSettings {
   std::string scene;
   std::string chip = "csx600";  ///< preset or .toml file
   std::string size;             ///< "WIDTHxHEIGHT"; "" for the scene's
-  RenderOptions options;        ///< of the chip, what `chip` and the chip's keys say
+  RenderOptions options;        ///< its chip is `chip` with the chip's keys
 };
 
-/// A key that is not one of the chip's. The only declaration of its name, its values and its effect.
+/// A key that is not one of the chip's: its name, its values and its effect.
 struct RunParameter {
   std::string key;
   std::string allowed;
   model::Effect effect;
-  /// Returns false, and changes nothing, for a value that is not allowed.
-  bool (*write)(RunSettings&, const std::string& value);
-  std::string (*read)(const RunSettings&);
+  /// Returns false, and changes no setting, for a value that is not allowed.
+  std::function<bool(RunSettings&, const std::string& value)> write;
+  std::function<std::string(const RunSettings&)> read;
 };
 
-/// scene, chip, size, samples, timing and the firmware's. How many blocks are buffered (firmware.n,
-/// firmware.buffer) does not change the image, but the order in which the firmware asks for things.
+/// scene, chip, size, samples, timing and "firmware." with each option of the firmware's table
+/// (program_options.hpp). How many blocks are buffered (firmware.n, firmware.buffer) does not change the
+/// image, but the order in which the firmware makes its requests.
 const std::vector<RunParameter>& run_parameter_table();
 
 /// nullptr for an unknown key.
 const RunParameter* find_run_parameter(const std::string& key);
+
+/// Whether a key names a parameter of the run or of the chip.
+bool is_setting(const std::string& key);
 
 /// Throws InputError for an unknown key and for a value that its parameter does not take.
 void require_allowed(const Setting& setting);
@@ -52,10 +56,10 @@ RunSettings make_settings(const std::vector<Setting>& settings);
 /// The value of every key; chip and firmware.
 std::string value_of(const RunSettings& settings, const std::string& key);
 
-/// Two runs of which these texts are equal ask the same of their machines (Effect::stream).
+/// Two runs with the same text ask the same of their machines (Effect::stream).
 std::string stream_inputs(const RunSettings& settings);
 
-/// Two runs of which these are equal are the same run; the scene's files are not looked at.
+/// Two runs with the same text are the same run; the scene's files are not looked at.
 std::string all_inputs(const RunSettings& settings);
 
 }  // namespace testbench

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <deque>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace testbench {
+
+/// An option that names a file to be written, and the file; "" where the option was not given.
+using OutputOption = std::pair<std::string, std::string>;
+
+/// The files that a command writes, each named by an option.
+class OutputFiles {
+ public:
+  /// @param names of the option, as CLI11 takes them ("-o,--output"); below, the first long one
+  CLI::Option& add_to(CLI::App& command, const std::string& names, const std::string& meaning);
+
+  /// "" where the option was not given.
+  const std::string& path(const std::string& option) const;
+
+  /// Before the run: throws InputError for a file that cannot be written, and for one that two options name.
+  /// @param others are written by somebody else, who checks that they can be
+  void require_writable(const std::vector<OutputOption>& others = {}) const;
+
+  /// Writes what `make` returns, if the option was given.
+  void write(const std::string& option, const std::function<std::string()>& make) const;
+
+ private:
+  std::deque<OutputOption> files_;  // where CLI11 writes, so no element may move
+};
+
+}  // namespace testbench

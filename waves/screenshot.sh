@@ -8,7 +8,7 @@ program=$(realpath "${1:-$here/../build/release/csx600}")
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 
-# 24 blocks: intersection bin, path bin and ray bin, 8 blocks each.
+# 24 blocks: intersection stage, path stage and ray stage, 8 blocks each.
 "$program" render "$here/../scenes/cornell_box" --size 64x64 --samples 1 \
   --waves "$directory/overlap.fst" --waves-blocks 97:24 > /dev/null
 

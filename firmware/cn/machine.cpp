@@ -1,6 +1,7 @@
 #include "firmware/cn/machine.hpp"
 
 #include "firmware/cn/language/offset_bits.hpp"
+#include "firmware/cn/language/shortcut.hpp"
 
 namespace cn {
 namespace {
@@ -78,7 +79,8 @@ void Machine::observe_poly(Access access, PolySpan bytes, const LaneMask& enable
     access_observer()->touches_poly(access, bytes, first_pe, enabled.strip_bits(first_pe / kStripLanes));
 }
 
-/// Returns how many there are. Without a branch on who is chosen: nobody could predict it.
+/// Returns how many PEs are chosen. Arithmetic instead of a branch on the choice, which the processor could
+/// not predict.
 int Machine::write_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
   const int shift = number.offset_bytes % 8 * 8;
   const std::uint64_t place = std::uint64_t{0xffffffffu} << shift;
@@ -97,9 +99,9 @@ int Machine::write_ascending(const LaneMask& chosen, PolyField<std::int32_t> num
   return static_cast<int>(next);
 }
 
-int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
-  // A running count by doubling distance: in round r each PE adds the count of the PE 2^r to its left, which
-  // takes 2^r steps along the path. The result is known without walking it; tests compare with the walk.
+/// A running count by doubling distance: in round r each PE adds the count of the PE 2^r to its left, which
+/// takes 2^r steps along the path.
+void Machine::charge_running_count() {
   std::uint64_t steps = 0;
   std::uint64_t rounds = 0;
   for (int distance = 1; distance < num_pes(); distance *= 2, ++rounds) steps += std::uint64_t(distance);
@@ -112,15 +114,18 @@ int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> nu
   node.counts[InstructionClass::reduce] = 1;
   node.reached = true;
   node.enabled_lanes = std::uint64_t(num_pes());
+}
 
+int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number) {
   if (access_observer() != nullptr) {
     access_observer()->kernel_begins("number_ascending");
     observe_poly(Access::write, {number.offset_bytes, sizeof(std::int32_t)}, chosen);
     access_observer()->kernel_ends();
   }
-  const int next = write_ascending(chosen, number);
+  const int count =
+      found_another_way([&] { charge_running_count(); }, [&] { return write_ascending(chosen, number); });
   retire("number_ascending", issued_);
-  return next;
+  return count;
 }
 
 void Machine::observe_swazzle(const char* name, PolyField<std::uint64_t> value, int from_neighbour) {

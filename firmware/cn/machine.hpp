@@ -12,19 +12,19 @@
 
 namespace cn {
 
-/// A firmware fault: unaligned transfer, address outside mono memory, no semaphore left, a wait that nothing
-/// can end.
+/// A firmware fault: unaligned transfer, address outside mono memory, no semaphore left, a wait that can
+/// never end.
 class MachineFault : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Of the thread that the firmware begins with; others may be above, below or equal.
+/// Priority of the initial thread. Other threads may have higher, lower or equal priority.
 inline constexpr int kFirstThreadPriority = 0;
 
 /// The chip as firmware sees it: one control unit with its mono memory, a PE array with its poly memory, and
-/// the programmed I/O between them. What it costs, and when a transfer is over, is the implementation's
-/// business.
+/// the programmed I/O between them. Implementations decide what an operation costs and when a transfer is
+/// over.
 class Machine {
  public:
   static constexpr int kSemaphores = 64;
@@ -50,9 +50,9 @@ class Machine {
     kernel_lanes_ = nullptr;
   }
 
-  /// Asynchronous copies between mono and poly memory; the PE array goes on computing. Only enabled PEs take
-  /// part; a transfer without any still signals `done`. Each PE's address and the size are multiples of 8
-  /// bytes.
+  /// Asynchronous copies between mono and poly memory; the PE array continues to compute. Only enabled PEs
+  /// take part. A transfer without an enabled PE still signals `done`. Each PE's address and the size are
+  /// multiples of 8 bytes.
   void async_copy_m2p(Semaphore done, PolySpan destination, const MonoPlaces& source,
                       const LaneMask& enabled);
   void async_copy_p2m(Semaphore done, const MonoPlaces& destination, PolySpan source,
@@ -64,7 +64,7 @@ class Machine {
                             poly_memory_.strip_words());
   }
 
-  /// A semaphore of its own for each caller; `name` appears in waves and fault messages.
+  /// Allocates a semaphore; `name` appears in waves and fault messages.
   Semaphore allocate_semaphore(const std::string& name);
   const std::vector<std::string>& semaphore_names() const { return semaphore_names_; }
   const std::string& semaphore_name(Semaphore semaphore) const {
@@ -74,33 +74,34 @@ class Machine {
   virtual void sem_signal(Semaphore semaphore) = 0;
   virtual void sem_wait(Semaphore semaphore) = 0;
 
-  /// Starts a hardware thread that runs `body`. The control unit has one instruction stream: a thread has it
-  /// until it waits on a semaphore that is not signalled; then the ready thread of the highest priority runs,
-  /// the one started first among equals. Greater numbers are higher; the firmware's first thread has
+  /// Starts a hardware thread that runs `body`. The control unit has one instruction stream. A thread keeps
+  /// it until it waits on a semaphore that is not signalled; then the ready thread of the highest priority
+  /// runs, among equals the one that was started first. Greater numbers are higher; the initial thread has
   /// kFirstThreadPriority. A thread of higher priority than the running one takes over as soon as it is
-  /// ready, between two kernels, batches of mono instructions, requests or semaphore operations; a new thread
+  /// ready, between two kernels, batches of mono instructions, requests or semaphore operations. A new thread
   /// may do so within this call, which itself takes no time.
   ///
   /// The run is over when all threads are. To wait for one, let the end of its `body` signal a semaphore.
-  /// What `body` refers to must live as long as it runs. Within Untimed no thread changes.
+  /// What `body` refers to must live as long as it runs. Threads do not change within Untimed.
   ///
   /// Throws MachineFault when the machine has no thread left (csx600: control.threads).
   virtual void start_thread(int priority, const std::string& name, std::function<void()> body);
 
-  /// How many PEs hold true. A reduction that the control unit reads, with its cost.
+  /// Returns how many PEs hold true: a reduction that the control unit reads, with its cost.
   int count(const LaneMask& lanes);
 
-  /// Ascending numbers 0, 1, 2, ... to the PEs of `chosen`, from left to right, over the PE-to-PE path
-  /// (paper, section 4); returns how many there are. Used as addresses, they compact what the chosen PEs
-  /// save.
+  /// Gives the PEs of `chosen` ascending numbers 0, 1, 2, ... from left to right, over the PE-to-PE path
+  /// (paper, section 4). Returns how many there are. Used as addresses, the numbers compact what the chosen
+  /// PEs save.
   int number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number);
 
-  /// `value` of the left neighbour (up) or the right one (down); the PE at the end of the path keeps what it
-  /// has.
+  /// Each PE takes the `value` of its left neighbour (up) or right neighbour (down). The PE at the end of the
+  /// path keeps its own.
   void swazzle_up(PolyField<std::uint64_t> value);
   void swazzle_down(PolyField<std::uint64_t> value);
 
-  /// Instructions of the control unit outside kernels: loop control, address arithmetic, request set-up.
+  /// Issues instructions of the control unit outside kernels: loop control, address arithmetic, request
+  /// set-up.
   virtual void issue_mono(std::uint64_t instructions) = 0;
 
   /// Mono memory as the control unit reads it, through its data cache; valid until the run ends.
@@ -115,24 +116,23 @@ class Machine {
     write_mono_bytes(to.address, &value, sizeof(T));
   }
 
-  /// What follows, kernels and requests, belongs to `label`.
+  /// Labels the kernels and requests that follow.
   void set_label(const Label& label) { label_ = label; }
-  /// For observers: from now on these PEs' slots of a block of the bins hold work.
+  /// Tells observers which PEs' slots of a block of the bins hold work from now on.
   virtual void report_fill(int /*block*/, const LaneMask& /*slots*/) {}
 
-  /// From here on nothing costs time, until timed(true): for work that a timed program leaves to others.
-  /// It sees the data of every transfer started before it, waited for or not, and does not use up their
-  /// signals.
+  /// Until timed(true), work takes no time: it stands for what a timed program leaves to others. Such work
+  /// sees the data of every transfer started before it, waited for or not, and does not use up their signals.
   virtual void timed(bool on) = 0;
 
-  /// Told of accesses and synchronisation from now on; may be null.
+  /// Sets who is told of accesses and synchronisation from now on; may be null.
   void set_access_observer(AccessObserver* observer) { poly_memory_.set_observer(observer); }
 
  protected:
-  /// For implementations, which tell it of waits, signals and timed(); null when nobody looks.
+  /// The observer, which implementations tell of waits, signals and timed(); null when there is none.
   AccessObserver* access_observer() const { return poly_memory_.observer(); }
   const Label& label() const { return label_; }
-  /// Enabled for the kernel that retires; null for what all PEs do.
+  /// The PEs enabled for the kernel that retires; null for an operation of all PEs.
   const LaneMask* kernel_lanes() const { return kernel_lanes_; }
 
   virtual void retire(const char* kernel, const IssueTree& issued) = 0;
@@ -146,6 +146,7 @@ class Machine {
   }
   void observe_poly(Access access, PolySpan bytes, const LaneMask& enabled);
   void begin_transfer(const Transfer& transfer);
+  void charge_running_count();
   int write_ascending(const LaneMask& chosen, PolyField<std::int32_t> number);
   void observe_swazzle(const char* name, PolyField<std::uint64_t> value, int from_neighbour);
   void swazzle_rows(PolyField<std::uint64_t> value, int from_neighbour);
@@ -157,7 +158,7 @@ class Machine {
   std::vector<std::string> semaphore_names_;
 };
 
-/// Work within the scope is done, but takes no time and is not counted.
+/// Work within the scope takes no time and is not counted.
 class Untimed {
  public:
   explicit Untimed(Machine& machine) : machine_(machine) { machine_.timed(false); }

@@ -41,8 +41,8 @@ Dgemm::Dgemm(cn::Machine& machine, const Kernels& kernels, const Problem& proble
   saved_ = machine.allocate_semaphore("C saved");
 }
 
-/// Everything is loaded a step ahead; A, for the panel after, in as many parts as there are steps, lest B
-/// wait for it.
+/// Loads everything a step ahead. A is loaded for the panel after, in as many parts as there are steps, so
+/// that B does not wait for it.
 void Dgemm::run() {
   load_b_stream(0);
   for (int part = 0; part < chunks(); ++part) load_a(0, part);
@@ -66,7 +66,7 @@ Dgemm::Step Dgemm::step(int number) const {
           number % chunks()};
 }
 
-/// One of two buffers.
+/// Returns one of two buffers.
 cn::PolySpan Dgemm::fed(int number) const {
   const Shape& shape = problem_.shape;
   const int bytes = shape.chunk_tiles * shape.depth / kFeeders * kTileColumns * kDoubleBytes;
@@ -103,7 +103,7 @@ void Dgemm::load_b_stream(int number) {
   const auto panel =
       std::uint64_t(at.column_block) * std::uint64_t(problem_.panels) + std::uint64_t(at.panel);
   const std::uint64_t chunk = panel * std::uint64_t(chunks()) + std::uint64_t(at.chunk);
-  // The first feeder is PE computing_pes(): addresses are by PE and wrap.
+  // The first feeder is PE computing_pes(). Its address is computed by PE number and wraps.
   const cn::MonoAddress from =
       problem_.b_stream.address + chunk * kFeeders * bytes - std::uint64_t(computing_pes()) * bytes;
   machine_.async_copy_m2p(fed_, to, cn::MonoPlaces::array(from, bytes),

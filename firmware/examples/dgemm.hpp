@@ -9,16 +9,17 @@ namespace examples {
 ///
 /// Each PE keeps two rows of a block of C in its SRAM, and `depth` columns of the same rows of A. The rows of
 /// B travel down the PE-to-PE path, four elements to a vector: each passes all PEs and is loaded from mono
-/// memory only once for a block of C. The path is a line without a way back, so PE p is p rows of B ahead of
-/// PE 0: it takes them in the order p, p + 1, ..., K - 1, 0, ..., p - 1, its columns of A are packed in that
-/// order, and it sums in that order. A vector that has not passed all PEs when the panel ends waits in SRAM.
+/// memory only once for a block of C. The path is a line without a link from its end to its start, so PE p is
+/// p rows of B ahead of PE 0: it takes them in the order p, p + 1, ..., K - 1, 0, ..., p - 1, its columns of
+/// A are packed in that order, and it sums in that order. A vector that has not passed all PEs when the panel
+/// ends waits in SRAM.
 ///
 /// The last kFeeders PEs compute nothing: they hold the rows of B that follow, where the others hold C.
 ///
 /// Cycles of one row of B and one tile of C (2 x 4), of which the 8 products and sums are the work:
 ///
 ///     multiply-adds   2 vectors of 4                                           8
-///     path            1 vector of 4 by one step, nothing goes on beside it     4
+///     path            1 vector of 4 by one step, overlaps with nothing         4
 ///     feeding         every 8 rows a load that is enabled in the feeders       1/4
 ///     loads           A 2 doubles, 4; feeders 1: beside the multiply-adds      0
 ///
@@ -31,18 +32,18 @@ namespace examples {
 /// panel ahead, 4 d of A. Loading takes 0.8 of the time that multiplying takes.
 class Dgemm {
  public:
-  static constexpr int kRows = 2;         ///< of C in a PE
-  static constexpr int kTileColumns = 4;  ///< a vector's
-  static constexpr int kFeeders = 8;      ///< PEs
+  static constexpr int kRows = 2;         ///< rows of C in a PE
+  static constexpr int kTileColumns = 4;  ///< columns of C in a vector
+  static constexpr int kFeeders = 8;      ///< PEs that feed the path
 
   struct Shape {
-    int tiles = 40;       ///< of a PE's block of C, 4 columns each
-    int depth = 64;       ///< of a panel, a multiple of kFeeders
-    int chunk_tiles = 5;  ///< for which B is loaded at a time; divides `tiles`
+    int tiles = 40;       ///< in a PE's block of C, of 4 columns each
+    int depth = 64;       ///< depth of a panel, a multiple of kFeeders
+    int chunk_tiles = 5;  ///< tiles for which B is loaded at a time; divides `tiles`
   };
   struct Problem {
     Shape shape;
-    int row_blocks = 1;  ///< of 2 rows x (num_pes - kFeeders)
+    int row_blocks = 1;  ///< blocks of 2 rows x (num_pes - kFeeders)
     int column_blocks = 1;
     int panels = 1;                    ///< K = panels x depth
     cn::MonoPointer<double> a;         ///< [row block][panel][PE][k][row], from the PE's own k on
@@ -57,7 +58,7 @@ class Dgemm {
   void run();
 
  private:
-  /// What is multiplied at a time.
+  /// One step of the multiplication.
   struct Step {
     int row_block;
     int column_block;

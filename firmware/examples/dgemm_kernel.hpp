@@ -10,9 +10,9 @@ namespace examples {
 inline void multiply_tiles(const MultiplyTilesArguments& arguments) {
   using Vector = cn::poly4<double>;
   const cn::mask computes = cn::pe_num() < cn::poly<std::int32_t>(cn::strip.num_pes - Dgemm::kFeeders);
-  // Costs no instruction: the chip's first one for a sum that starts is a multiply, which takes as long as
-  // the multiply-add.
-  const Vector nothing(0.0, 0.0, 0.0, 0.0);
+  // Charges no instruction: on the chip, a sum begins with a multiply, which takes as long as the
+  // multiply-add.
+  const Vector zero(0.0, 0.0, 0.0, 0.0);
   for (int tile = 0; tile < arguments.tiles; ++tile) {
     const int place = arguments.first_tile + tile;
     const cn::VectorStream<double> b(arguments.b_in_place, place * Dgemm::kTileColumns, arguments.b_fed,
@@ -23,7 +23,7 @@ inline void multiply_tiles(const MultiplyTilesArguments& arguments) {
     };
     Vector sum[Dgemm::kRows];
     for (int row = 0; row < Dgemm::kRows; ++row)
-      sum[row].become(arguments.first ? nothing : arguments.c.load(of_c(row)));
+      sum[row].assign_all_lanes(arguments.first ? zero : arguments.c.load(of_c(row)));
     for (int k = 0; k < arguments.depth; k += 2) {
       const Vector a = arguments.a.load(cn::four_from(k * Dgemm::kRows));
       if (k % Dgemm::kFeeders == 0) b.feed();
@@ -32,7 +32,7 @@ inline void multiply_tiles(const MultiplyTilesArguments& arguments) {
         for (int row = 0; row < Dgemm::kRows; ++row) {
           const cn::poly<double>& factor = a[step * Dgemm::kRows + row];
           const Vector factors(factor, factor, factor, factor);
-          sum[row].become(multiply_add(row_of_b, factors, sum[row]));
+          sum[row].assign_all_lanes(multiply_add(row_of_b, factors, sum[row]));
         }
       }
     }

@@ -38,8 +38,8 @@ Fft::Fft(cn::Machine& machine, const Kernels& kernels, const Layout& layout)
   saved_ = machine.allocate_semaphore("saved");
 }
 
-/// Two buffers: while a step is worked on, the other buffer is saved and then loaded, each during one half of
-/// the work.
+/// Uses two buffers: while one is in process, the other is saved and then loaded, each during one half of the
+/// step.
 void Fft::run() {
   machine_.run(kernels_.fft_places, places_, cn::LaneMask::first(machine_.num_pes()));
   load(0);
@@ -101,7 +101,8 @@ FftArguments Fft::arguments(int number) {
   return arguments;
 }
 
-/// Lines of 512 in two PEs each: 256 by themselves, and butterflies between the two.
+/// Transforms lines of 512 numbers in two PEs each: 256 numbers within each PE, then butterflies between the
+/// two.
 void Fft::transform(int number) {
   FftArguments arguments = this->arguments(number);
   const cn::LaneMask all = enabled(step(number));

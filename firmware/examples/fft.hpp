@@ -5,7 +5,7 @@
 
 namespace examples {
 
-inline constexpr int kFftSize = 512;  ///< complex numbers a line, lines an image
+inline constexpr int kFftSize = 512;  ///< complex numbers in a line, and lines in an image
 inline constexpr int kIndexBits = 8;
 inline constexpr int kComplexPerPe = 1 << kIndexBits;  ///< half a line
 inline constexpr int kScratchComplex = kComplexPerPe / 2;
@@ -28,7 +28,7 @@ class Fft {
     cn::MonoPointer<Complex> tiles;
     cn::MonoPointer<Complex> results;
     cn::MonoPointer<Complex> twiddles;  ///< exp(-2 pi i k / 512), k = 0..255
-    int count = 0;                      ///< of images; at least 2: one is read while another is written
+    int count = 0;  ///< number of images, at least 2: one is read while another is written
   };
 
   /// `machine` has a multiple of 32 PEs. Throws cn::MachineFault, cn::PolyMemoryOverflow.

@@ -7,13 +7,13 @@ namespace examples {
 
 using Words = cn::poly4<std::uint64_t>;
 
-/// Four complex numbers a PE; with their four real and imaginary parts 32 of the 128 bytes of registers.
+/// Four complex numbers for each PE; their real and imaginary parts take 32 of the 128 bytes of registers.
 struct Complex4 {
   cn::poly4<float> real;
   cn::poly4<float> imaginary;
 };
 
-/// The same registers under other names: the words of a complex number are its parts.
+/// Names the same registers differently: the words of a complex number are its parts.
 inline Complex4 to_complex(const Words& words) {
   return {
       {cn::low_float(words[0]), cn::low_float(words[1]), cn::low_float(words[2]), cn::low_float(words[3])},
@@ -33,7 +33,7 @@ inline Complex4 operator-(const Complex4& a, const Complex4& b) {
   return {a.real - b.real, a.imaginary - b.imaginary};
 }
 
-/// A mono factor for each of the four complex numbers, as the vector unit takes it.
+/// A mono factor for each of the four complex numbers, for a vector instruction.
 struct Factor4 {
   cn::mono4<float> real;
   cn::mono4<float> imaginary;
@@ -53,8 +53,8 @@ inline Complex4 operator*(const Complex4& a, const Factor4& factor) {
           multiply_add(a.real, factor.imaginary, a.imaginary * factor.real)};
 }
 
-/// a + b factor and, with that, a - b factor = 2 a - (a + b factor): a butterfly of six multiply-adds (Linzer
-/// and Feig, 1993).
+/// Computes a + b factor and from it a - b factor = 2 a - (a + b factor): a butterfly of six multiply-adds
+/// (Linzer and Feig, 1993).
 inline Complex4 add_product(const Complex4& a, const Complex4& b, const Factor4& factor) {
   const Factor4 minus = {
       factor.real, {-factor.imaginary[0], -factor.imaginary[1], -factor.imaginary[2], -factor.imaginary[3]}};
@@ -65,8 +65,8 @@ inline Complex4 twice_minus(const Complex4& a, const Complex4& sum) {
   return {multiply_subtract(a.real, 2.0f, sum.real), multiply_subtract(a.imaginary, 2.0f, sum.imaginary)};
 }
 
-/// Two stages of butterflies on four complex numbers, at first + x * first_span + y * second_span: between
-/// the two x, then between the two y.
+/// Two stages of butterflies on four complex numbers, at first + x * first_span + y * second_span: first
+/// between the two x, then between the two y.
 struct Quad {
   int first;
   int first_span;
@@ -75,8 +75,8 @@ struct Quad {
   int at(int x, int y) const { return first + x * first_span + y * second_span; }
 };
 
-/// Quad `number` of 64 in stages `stage` and `stage` + 1. Spans grow where numbers come in bit-reversed
-/// order, and shrink where they come in natural order.
+/// Returns quad `number` of 64 in stages `stage` and `stage` + 1. Spans grow if numbers come in bit-reversed
+/// order, and shrink if they come in natural order.
 inline Quad quad(const FftArguments& arguments, int stage, int number) {
   const int small = 1 << (arguments.from_reversed ? stage : kIndexBits - 2 - stage);
   const int within = number % small;
@@ -84,8 +84,8 @@ inline Quad quad(const FftArguments& arguments, int stage, int number) {
   return arguments.from_reversed ? Quad{first, small, 2 * small} : Quad{first, 2 * small, small};
 }
 
-/// Which twiddle a butterfly of the numbers `upper` and `upper` + span takes (Cooley and Tukey, 1965): by its
-/// place within its block, or by its block's bit-reversed number.
+/// Returns the twiddle of a butterfly of the numbers `upper` and `upper` + span (Cooley and Tukey, 1965): by
+/// its place within its block, or by its block's bit-reversed number.
 inline int twiddle_of(const FftArguments& arguments, int span, int upper) {
   if (arguments.from_reversed) return upper % span * (kComplexPerPe / span);
   int reversed = 0;
@@ -106,8 +106,8 @@ inline Butterflies4 butterflies(const FftArguments& arguments, const Complex4& a
   return {sum, twice_minus(a, sum)};
 }
 
-/// The numbers at even (0) or odd (1) places of the sums, then of the differences: every second complex
-/// number of 64 bytes of registers.
+/// Returns the numbers at even (0) or odd (1) places of the sums, then of the differences: every second
+/// complex number of 64 bytes of registers.
 inline Complex4 every_second(const Butterflies4& from, int first) {
   const Complex4& a = from.sum;
   const Complex4& b = from.difference;
@@ -115,8 +115,8 @@ inline Complex4 every_second(const Butterflies4& from, int first) {
           {a.imaginary[first], a.imaginary[first + 2], b.imaginary[first], b.imaginary[first + 2]}};
 }
 
-/// Two stages of two quads: eight complex numbers, 64 of the 128 bytes of registers, and as much for what
-/// becomes of them.
+/// Two stages of two quads: eight complex numbers take 64 of the 128 bytes of registers, and their results as
+/// much.
 inline void two_stages(const FftArguments& arguments, const Quad& one, const Quad& two) {
   const auto places = [&](int x0, int y0, int x1, int y1) {
     return cn::Indices4{one.at(x0, y0), one.at(x1, y1), two.at(x0, y0), two.at(x1, y1)};
@@ -138,20 +138,21 @@ inline void two_stages(const FftArguments& arguments, const Quad& one, const Qua
   arguments.data.store(y1, to_words(second.difference));
 }
 
-/// The 256 numbers of each PE, by itself: from bit-reversed order to natural, or the other way round. Stages
-/// go two by two, so each number is loaded and stored four times instead of eight.
+/// Transforms the 256 numbers within each PE, from bit-reversed order to natural or back. Stages come in
+/// pairs, so each number is loaded and stored four times instead of eight.
 inline void fft_local(const FftArguments& arguments) {
   for (int stage = 0; stage < kIndexBits; stage += 2)
     for (int number = 0; number < kComplexPerPe / 4; number += 2)
       two_stages(arguments, quad(arguments, stage, number), quad(arguments, stage, number + 1));
 }
 
-/// True in the PEs whose number has that bit.
+/// Returns true in the PEs whose number has that bit.
 inline cn::mask has_pe_bit(int bit) {
   return (cn::pe_num() & cn::poly<std::int32_t>(1 << bit)) != cn::poly<std::int32_t>(0);
 }
 
-/// Between the two PEs of a line: the odd one's numbers times exp(-2 pi i k / 512).
+/// First half of the butterflies between the two PEs of a line: multiplies the odd PE's numbers by exp(-2 pi
+/// i k / 512).
 inline void fft_twiddle(const FftArguments& arguments) {
   cn::poly_if(has_pe_bit(0), [&] {
     for (int index = 0; index < kComplexPerPe; index += 4) {
@@ -162,7 +163,8 @@ inline void fft_twiddle(const FftArguments& arguments) {
   });
 }
 
-/// Between the two PEs of a line: the even one gets the sums, the odd one the differences.
+/// Second half of the butterflies between the two PEs of a line: the even PE gets the sums, the odd PE the
+/// differences.
 inline void fft_pair(const FftArguments& arguments) {
   const cn::mask odd = has_pe_bit(0);
   const cn::poly<float> sign = cn::select(odd, cn::poly<float>(-1), cn::poly<float>(1));
@@ -184,7 +186,8 @@ inline void fft_pair_store(const FftArguments& arguments) {
                          arguments.scratch.load(cn::four_from(index)));
 }
 
-/// The index-th and the following three places whose index has the bit clear, and the same with it set.
+/// Returns the index-th and the following three places whose index has the bit clear, or the same with the
+/// bit set.
 struct ExchangePlaces {
   cn::Indices4 clear;
   cn::Indices4 set;
@@ -200,8 +203,8 @@ inline ExchangePlaces exchange_places(int first, int bit) {
   return places;
 }
 
-/// Swaps a bit of the PE's number with a bit of the index: PEs with the bit clear give away their half of the
-/// data with the index bit set for their partners' half with it clear.
+/// Swaps a bit of the PE's number with a bit of the index: PEs with the bit clear give the half of their data
+/// with the index bit set, and get their partners' half with it clear.
 inline void fft_exchange(const FftArguments& arguments) {
   const cn::mask has_bit = has_pe_bit(arguments.pe_bit);
   const int steps = 1 << arguments.pe_bit;
@@ -230,7 +233,7 @@ inline void fft_places(const FftPlacesArguments& arguments) {
   const auto address = [](const Number& bytes) { return cn::convert<cn::MonoAddress>(bytes); };
   const Number group = pe >> kGroupBits;
   const Number in_group = bits(0, kGroupBits);
-  // Which columns the exchange leaves in a PE: fft.cpp.
+  // fft.cpp tells which columns the exchange leaves in a PE.
   const Number column_set = bits(2, 3) + (bits(1, 1) << 3) + (bits(0, 1) << 4);
   arguments.tile_save.write(address(group * kTileRowBytes + column_set * kPieceBytes));
   arguments.tile_load.write(address(in_group * kTileRowBytes + group * kPieceBytes));

@@ -5,15 +5,15 @@
 #include "firmware/cn/language/poly4.hpp"
 #include "firmware/cn/simd/level.hpp"
 
-/// Small programs that show other uses of the chip than ray tracing. Here: what their poly programs are
-/// given.
+/// Small programs that show other uses of the chip than ray tracing. This file declares the arguments of
+/// their poly programs.
 namespace examples {
 
 using cn::PolyArray;
 using cn::PolyField;
 using cn::PolyPointer;
 
-/// C += A B for some tiles of 2 rows and 4 columns, B passing by.
+/// C += A B for some tiles of 2 rows and 4 columns; B passes along the path.
 struct MultiplyTilesArguments {
   PolyArray<double> a;           ///< [depth][row]
   PolyArray<double> b_in_place;  ///< [tile][column]: where the path left off
@@ -34,14 +34,14 @@ struct SeedRandomArguments {
 struct SamplePayoffsArguments {
   PolyField<std::uint32_t> word[3];
   PolyField<double> sum;
-  int pairs = 0;  ///< of samples
+  int pairs = 0;  ///< number of pairs of samples
   double spot = 0;
   double strike = 0;
   double drift = 0;      ///< (rate - volatility^2 / 2) maturity
   double diffusion = 0;  ///< volatility sqrt(maturity)
 };
 
-/// y = factor y + x, again and again
+/// y = factor y + x, `steps` times
 struct ScaleAndAddArguments {
   PolyArray<double> x;
   PolyArray<double> y;
@@ -56,15 +56,15 @@ struct Complex {
   float imaginary = 0;
 };
 
-/// One step of the FFT on 256 complex numbers a PE.
+/// One step of the FFT on the 256 complex numbers of each PE.
 struct FftArguments {
   PolyArray<std::uint64_t> data;
   PolyArray<std::uint64_t> scratch;   ///< half as long
   const Complex* twiddles = nullptr;  ///< mono: exp(-2 pi i k / 512), k = 0..255
   bool from_reversed = false;         ///< local: bit-reversed order to natural, else back
-  int half = 0;                       ///< 0 or 1, of steps that need scratch for all data
-  int pe_bit = 0;                     ///< exchange: of the PE's number
-  int index_bit = 0;                  ///< exchange: of the index in `data`
+  int half = 0;                       ///< 0 or 1; for steps that need scratch for all data
+  int pe_bit = 0;                     ///< exchange: bit of the PE's number
+  int index_bit = 0;                  ///< exchange: bit of the index in `data`
 };
 
 /// Byte offsets of each PE's piece in the FFT's mono arrays.
@@ -90,7 +90,8 @@ struct Kernels {
 
 const Kernels& kernels(cn::Level level);
 
-/// The same, built to report their SRAM accesses to a cn::AccessObserver; for every x86-64 machine.
+/// Kernels built to report their SRAM accesses to a cn::AccessObserver; they run on every x86-64 machine of
+/// this build.
 const Kernels& observed_kernels();
 
 }  // namespace examples

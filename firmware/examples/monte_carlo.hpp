@@ -5,7 +5,7 @@
 
 namespace examples {
 
-/// Price of a European call option by simulation: each PE samples prices at maturity by itself.
+/// Price of a European call option by simulation: each PE samples prices at maturity independently.
 class MonteCarlo {
  public:
   struct Option {
@@ -19,8 +19,8 @@ class MonteCarlo {
     Option option;
     std::uint32_t seed = 1;
     int kernels = 1;               ///< runs of the kernel
-    int pairs_per_kernel = 64;     ///< of samples a PE
-    cn::MonoPointer<double> sums;  ///< one a PE: payoffs at maturity, not discounted
+    int pairs_per_kernel = 64;     ///< pairs of samples for each PE
+    cn::MonoPointer<double> sums;  ///< one for each PE: payoffs at maturity, not discounted
   };
 
   /// Throws cn::PolyMemoryOverflow.

@@ -5,9 +5,10 @@
 
 namespace examples {
 
-/// y = factor y + x for long arrays, `steps` times: the more steps, the more there is to compute for what is
-/// moved. Alone it waits for each copy; with a hardware thread that loads and one that saves, the same plain
-/// code in each of the three overlaps copies and computation. The results are the same.
+/// Computes y = factor y + x for long arrays, `steps` times: the more steps, the more there is to compute for
+/// each word moved. run_alone() waits for each copy. run_with_threads() has one hardware thread for loads and
+/// one for saves; the same plain code in each of the three threads overlaps copies and computation. The
+/// results are the same.
 class Stream {
  public:
   struct Problem {
@@ -16,7 +17,7 @@ class Stream {
     double factor = 0;
     int steps = 0;
     int blocks = 0;
-    int elements = 0;  ///< of a PE in a block, a multiple of 4
+    int elements = 0;  ///< elements of a PE in a block, a multiple of 4
   };
 
   /// Throws cn::PolyMemoryOverflow, or cn::MachineFault for another number of elements.
@@ -27,8 +28,8 @@ class Stream {
   void run_with_threads();
 
  private:
-  /// One is computed, one is saved and one loaded. With two, the one whose save ends amid a kernel would be
-  /// loaded after it: threads change between kernels.
+  /// One buffer is computed, one is saved and one loaded. With two buffers, a buffer whose save ends during a
+  /// kernel would be loaded only after it, because threads change between kernels.
   static constexpr int kBuffers = 3;
 
   void load(int block);
@@ -42,8 +43,8 @@ class Stream {
   cn::LaneMask all_;
   cn::PolySpan x_[kBuffers];
   cn::PolySpan y_[kBuffers];
-  cn::Semaphore loaded_, saved_;                 ///< a copy is over
-  cn::Semaphore empty_, full_, computed_, end_;  ///< from thread to thread
+  cn::Semaphore loaded_, saved_;                 ///< signalled by copies
+  cn::Semaphore empty_, full_, computed_, end_;  ///< signalled by threads
 };
 
 }  // namespace examples

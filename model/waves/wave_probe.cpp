@@ -76,10 +76,10 @@ void WaveProbe::kernel_details(const KernelDetails& details) {
 
 void WaveProbe::began_kernel(const char* name, Cycles start, int enabled_pes) {
   const cn::Label& label = details_.label;
-  if (label.bin != computed_label_.bin || label.block != computed_label_.block) {
+  if (label.stage != computed_label_.stage || label.block != computed_label_.block) {
     computed_label_ = label;
-    if (label.bin != nullptr) blocks_.begin_block(start);
-    change_label(control_stream, start, WaveSignal::bins_compute_bin, label);
+    if (label.stage != nullptr) blocks_.begin_block(start);
+    change_label(control_stream, start, WaveSignal::bins_compute_stage, label);
   }
   change(control_stream, start, WaveSignal::control_kernel, kernels_(name));
   change(control_stream, start, WaveSignal::pe_array_busy, 1);
@@ -131,7 +131,7 @@ void WaveProbe::started(const PioEvent& event) {
   change(stream, at, load ? WaveSignal::pio_load_request : WaveSignal::pio_save_request,
          event.id & kNoRequest);
   change(stream, at, load ? WaveSignal::pio_load_bytes : WaveSignal::pio_save_bytes, event.bytes);
-  change_label(stream, at, load ? WaveSignal::bins_load_bin : WaveSignal::bins_save_bin, event.label);
+  change_label(stream, at, load ? WaveSignal::bins_load_stage : WaveSignal::bins_save_stage, event.label);
   change(counts_stream, at, WaveSignal::pio_queue_depth, std::uint64_t(event.queue_depth));
   change_lanes(stream, at, WaveSignal::pe_transfer, event.enabled, part(event, true));
   wake_for(at);
@@ -203,9 +203,9 @@ void WaveProbe::change_memory_counters(Cycles cycle) {
   change(counts_stream, cycle, WaveSignal::clear_connect_pio_bytes, counters.pio_bytes);
 }
 
-void WaveProbe::change_label(std::size_t stream, Cycles cycle, WaveSignal bin, const cn::Label& label) {
-  change(stream, cycle, bin, label.bin == nullptr ? 0 : bins_(label.bin));
-  change(stream, cycle, next(bin), label.block < 0 ? kNoBlock : std::uint64_t(label.block));
+void WaveProbe::change_label(std::size_t stream, Cycles cycle, WaveSignal stage, const cn::Label& label) {
+  change(stream, cycle, stage, label.stage == nullptr ? 0 : bins_(label.stage));
+  change(stream, cycle, next(stage), label.block < 0 ? kNoBlock : std::uint64_t(label.block));
 }
 
 void WaveProbe::change_lanes(std::size_t stream, Cycles cycle, WaveSignal signal, const cn::LaneMask* lanes,

@@ -68,7 +68,7 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
     return shows(WaveSignal::ddr_data) || shows(WaveSignal::ddr_bank_command) ||
            shows(WaveSignal::ddr_bank_row);
   }
-  /// Kernels and bins by number, the first has number 1.
+  /// Kernels and stages by number, the first has number 1.
   const std::vector<std::string>& kernel_names() const { return kernels_.names(); }
   const std::vector<std::string>& bin_names() const { return bins_.names(); }
   /// Changes that were reported too late and are shown late. 0 as long as the observed units run ahead of
@@ -97,7 +97,7 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
   void change(std::size_t stream, Cycles cycle, WaveSignal signal, std::uint64_t value, int index = 0);
   void change_lanes(std::size_t stream, Cycles cycle, WaveSignal signal, const cn::LaneMask* lanes,
                     std::uint64_t value);
-  void change_label(std::size_t stream, Cycles cycle, WaveSignal bin, const cn::Label& label);
+  void change_label(std::size_t stream, Cycles cycle, WaveSignal stage, const cn::Label& label);
   void change_memory_counters(Cycles cycle);
   std::uint64_t main_class(const cn::IssueTree& issued) const;
   void end_control();

@@ -52,21 +52,22 @@ void add_bins(Rows& rows) {
   const Names none = {{0, "none"}};
   const Names no_block = {{kNoBlock, "none"}};
   constexpr auto kBins = WaveNames::bins;
-  rows.insert(rows.end(),
-              {{Signal::bins_load_bin, "bins", "load_bin", 8, kNumber, kOverview, kChip, kLoad,
-                "bin that the latest mono-to-poly request belongs to, as the firmware names it", kBins, none},
-               {Signal::bins_load_block, "bins", "load_block", 16, kNumber, kOverview, kChip, kLoad,
-                "block of that bin", kFixed, no_block},
-               {Signal::bins_compute_bin, "bins", "compute_bin", 8, kNumber, kOverview, kChip, kCompute,
-                "bin that the latest kernel belongs to", kBins, none},
-               {Signal::bins_compute_block, "bins", "compute_block", 16, kNumber, kOverview, kChip, kCompute,
-                "block of that bin", kFixed, no_block},
-               {Signal::bins_save_bin, "bins", "save_bin", 8, kNumber, kOverview, kChip, kSave,
-                "bin that the latest poly-to-mono request belongs to", kBins, none},
-               {Signal::bins_save_block, "bins", "save_block", 16, kNumber, kOverview, kChip, kSave,
-                "block of that bin", kFixed, no_block},
-               {Signal::bins_fill, "bins", "fill", 32, kPlot, kOverview, kChip, kOther,
-                "slots of all blocks that hold work, as the firmware reports them"}});
+  rows.insert(
+      rows.end(),
+      {{Signal::bins_load_stage, "bins", "load_stage", 8, kNumber, kOverview, kChip, kLoad,
+        "stage that the latest mono-to-poly request belongs to, as the firmware names it", kBins, none},
+       {Signal::bins_load_block, "bins", "load_block", 16, kNumber, kOverview, kChip, kLoad,
+        "block of that stage", kFixed, no_block},
+       {Signal::bins_compute_stage, "bins", "compute_stage", 8, kNumber, kOverview, kChip, kCompute,
+        "stage that the latest kernel belongs to", kBins, none},
+       {Signal::bins_compute_block, "bins", "compute_block", 16, kNumber, kOverview, kChip, kCompute,
+        "block of that stage", kFixed, no_block},
+       {Signal::bins_save_stage, "bins", "save_stage", 8, kNumber, kOverview, kChip, kSave,
+        "stage that the latest poly-to-mono request belongs to", kBins, none},
+       {Signal::bins_save_block, "bins", "save_block", 16, kNumber, kOverview, kChip, kSave,
+        "block of that stage", kFixed, no_block},
+       {Signal::bins_fill, "bins", "fill", 32, kPlot, kOverview, kChip, kOther,
+        "slots of all blocks that hold work, as the firmware reports them"}});
 }
 
 void add_control(Rows& rows) {

@@ -11,11 +11,11 @@ namespace model {
 
 /// Every kind of signal of the waves, in the order in which files and views show them.
 enum class WaveSignal : std::uint8_t {
-  bins_load_bin,
+  bins_load_stage,
   bins_load_block,
-  bins_compute_bin,
+  bins_compute_stage,
   bins_compute_block,
-  bins_save_bin,
+  bins_save_stage,
   bins_save_block,
   bins_fill,
   control_state,

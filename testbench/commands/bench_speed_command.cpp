@@ -24,7 +24,7 @@ namespace testbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using path_tracer::Level;
+using cn::Level;
 using path_tracer::Program;
 
 constexpr int kPes[] = {16, 32, 64, 96, 192, 384, 768, 1024};

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/layout.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {

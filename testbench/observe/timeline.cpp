@@ -12,13 +12,13 @@ constexpr double kPicosecondsPerMicrosecond = 1e6;
 constexpr int kProcess = 1;  // the format's process ID; stands for the chip
 
 void add_label(Json& arguments, const cn::Label& label) {
-  if (label.bin == nullptr) return;
-  arguments["bin"] = label.bin;
+  if (label.stage == nullptr) return;
+  arguments["stage"] = label.stage;
   arguments["block"] = label.block;
 }
 
 std::string text_of(const cn::Label& label) {
-  return std::string(label.bin) + " " + std::to_string(label.block);
+  return std::string(label.stage) + " " + std::to_string(label.block);
 }
 
 bool is_wait(model::CycleCause cause) {
@@ -75,7 +75,7 @@ void Timeline::finished(const model::PioEvent& event) {
   Json arguments = {{"request", event.id}, {"bytes", event.bytes}, {"pes", event.pes}};
   arguments["enqueued_cycle"] = event.enqueued;
   add_label(arguments, event.label);
-  const std::string name = event.label.bin != nullptr ? text_of(event.label) : load ? "load" : "save";
+  const std::string name = event.label.stage != nullptr ? text_of(event.label) : load ? "load" : "save";
   add(load ? Track::loads : Track::saves, name, load ? "load" : "save", event.started, event.finished,
       std::move(arguments));
 }

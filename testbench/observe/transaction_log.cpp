@@ -40,8 +40,8 @@ void TransactionLog::write(const Transaction& transaction) {
   Json line;
   line["request"] = event.id;
   line["kind"] = event.direction == cn::Direction::mono_to_poly ? "load" : "save";
-  line["bin"] = event.label.bin == nullptr ? Json() : Json(event.label.bin);
-  line["block"] = event.label.bin == nullptr ? Json() : Json(event.label.block);
+  line["stage"] = event.label.stage == nullptr ? Json() : Json(event.label.stage);
+  line["block"] = event.label.stage == nullptr ? Json() : Json(event.label.block);
   line["semaphore"] =
       event.semaphore < 0 ? Json() : Json(chip_.control_unit.semaphore_name({event.semaphore}));
   line["bytes"] = event.bytes;
@@ -57,7 +57,7 @@ void TransactionLog::ended_transfer(bool upload, std::uint64_t bytes, model::Cyc
                                     model::Cycles finish) {
   const Json line = {{"request", nullptr},
                      {"kind", upload ? "upload" : "download"},
-                     {"bin", nullptr},
+                     {"stage", nullptr},
                      {"block", nullptr},
                      {"semaphore", nullptr},
                      {"bytes", bytes},

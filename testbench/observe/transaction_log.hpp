@@ -14,7 +14,7 @@ namespace testbench {
 ///
 ///   request      id, ascending in the order of enqueueing; null for the host
 ///   kind         load (mono to poly), save (poly to mono), upload, download
-///   bin, block   bin and block that the firmware labels it with; null without a label
+///   stage, block stage and block that the firmware labels it with; null without a label
 ///   semaphore    name of the semaphore that it signals; null if none
 ///   bytes, pes   bytes moved in all PEs, and number of PEs that take part
 ///   enqueued, started, finished   cycles

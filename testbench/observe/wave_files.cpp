@@ -9,8 +9,8 @@
 namespace testbench {
 namespace {
 
-/// Time that the view shows when too few blocks were computed: about as long as a few blocks of the paper's
-/// intersection bin.
+/// Time that the view shows when too few blocks were computed: about as long as a few blocks of the
+/// intersection stage.
 constexpr std::uint64_t kViewPicoseconds = 300'000'000;
 
 /// Number of blocks that the view shows, from the second in the window on, so that the first block's

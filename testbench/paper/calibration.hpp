@@ -42,7 +42,7 @@ struct Calibration {
 struct CalibrationOptions {
   int samples = 4;
   int at_once = 1;
-  path_tracer::Level level = cn::widest_level();
+  cn::Level level = cn::widest_level();
 };
 
 /// Fits each constant to one cell of fitted_cells(), by Newton's method with differences, and predicts the

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/program_config.hpp"
 
 namespace testbench {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/run_counts.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/control/control_statistics.hpp"
 #include "model/host_link/host_link_statistics.hpp"

@@ -5,7 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "firmware/path_tracer/kernels/kernels.hpp"
+#include "firmware/cn/simd/level.hpp"
+#include "firmware/path_tracer/program/program_config.hpp"
+#include "firmware/path_tracer/program/run_counts.hpp"
+#include "firmware/path_tracer/program/work.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
 #include "testbench/film/film.hpp"
@@ -23,7 +26,7 @@ struct RenderOptions {
   path_tracer::ProgramConfig program;
   path_tracer::Work work;
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
-  path_tracer::Level level = cn::widest_level();
+  cn::Level level = cn::widest_level();
   ObservationOptions observation;  ///< on the chip only
   bool check_hazards = false;  ///< with kernels built for it, at x86-64-v2 (model/hazards/hazard_checker.hpp)
 };

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/layout.hpp"
 #include "testbench/film/film.hpp"
 
 namespace testbench {

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/program_config.hpp"
 #include "model/config/chip_config.hpp"
 
 namespace testbench {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/run_counts.hpp"
 #include "model/pe_array/pe_array.hpp"
 
 namespace testbench {

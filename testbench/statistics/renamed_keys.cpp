@@ -16,6 +16,7 @@ const std::vector<RenamedKey>& renamed_keys() {
   static const std::vector<RenamedKey> keys = {
       {"host", "simulator"},  // the chip's parameters host.* are chip_config.host.* in statistics
       {"chip.host_link.host_dmas", "chip.host_link.transfers"},
+      {"chip.pe_array.kernels.replace", "chip.pe_array.kernels.continue_paths"},
   };
   return keys;
 }

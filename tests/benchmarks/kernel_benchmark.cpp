@@ -48,7 +48,7 @@ void run(benchmark::State& state, KernelBench& bench, const cn::Kernel<Arguments
       operations * kPes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void intersect(benchmark::State& state, Level level, bool sifted) {
+void intersect(benchmark::State& state, Level level, bool prefiltered) {
   KernelBench bench;
   LaneMask hit;
   IntersectArguments arguments;
@@ -57,8 +57,8 @@ void intersect(benchmark::State& state, Level level, bool sifted) {
   arguments.surface_place = {1024};
   arguments.triangles = bench.triangles.data();
   arguments.triangle_count = kTriangles;
-  const TriangleSieve sieve = make_sieve(bench.triangles.data(), kTriangles, kReach);
-  if (sifted) arguments.sieve = &sieve;
+  const Prefilter prefilter = make_prefilter(bench.triangles.data(), kTriangles, kReach);
+  if (prefiltered) arguments.prefilter = &prefilter;
   arguments.reach = kReach;
   arguments.hit_something = &hit;
   run(state, bench, kernels(level).intersect, arguments, kTriangles);
@@ -101,7 +101,7 @@ struct Registration {
       using std::string;
       benchmark::RegisterBenchmark((string("intersect, each triangle and PE/") + name).c_str(), intersect,
                                    level, false);
-      benchmark::RegisterBenchmark((string("intersect, sifted, each triangle and PE/") + name).c_str(),
+      benchmark::RegisterBenchmark((string("intersect, prefiltered, each triangle and PE/") + name).c_str(),
                                    intersect, level, true);
       benchmark::RegisterBenchmark((string("scatter, philox, no light, each PE/") + name).c_str(), scatter,
                                    level, Sampler::philox, false);

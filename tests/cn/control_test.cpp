@@ -28,7 +28,7 @@ class CnControl : public test_support::StripFixture {
     for (int i = 0; i < cn::kStripLanes; ++i)
       if (cn::MaskLanes(cn::strip.enabled)[i] != 0) ++ran[std::size_t(cn::strip.first_pe + i)];
   }
-  /// One instruction that nothing else issues.
+  /// An instruction that nothing else here issues.
   static void work() { cn::issue(InstructionClass::fp64_exp); }
   static std::uint64_t worked(const IssueTree& tree) { return tree.total()[InstructionClass::fp64_exp]; }
 
@@ -108,7 +108,7 @@ TEST_F(CnControl, WhileRunsEachPeAsOftenAsItWantsAndIssuesTheMost) {
     poly<std::int32_t> left = load(wanted);
     cn::poly_while([&] { return left > 0; },
                    [&] {
-                     left.become(left - 1);
+                     left.assign_all_lanes(left - 1);
                      work(), tick(ran);
                    });
     tick(after);
@@ -142,7 +142,7 @@ TEST_F(CnControl, WhileThatNoPeEntersAsksOnce) {
                              {InstructionClass::sram, 1},
                              {InstructionClass::int32_alu, 1}});
   EXPECT_EQ(issued_by([&] { cn::poly_while([] { return cn::pe_num() < 0; }, nothing); }), asked);
-  IssueCounts disabled = asked;  // nor can any, being disabled: the control unit finds out by asking
+  IssueCounts disabled = asked;  // disabled PEs cannot either; the control unit must ask to know
   disabled += counts({{InstructionClass::enable, 2}});
   EXPECT_EQ(issued_by([&] {
               cn::poly_if(mask(cn::MaskLanes{}),
@@ -184,7 +184,7 @@ TEST_F(CnControl, RegionsInALoopOfTheControlUnitAreNodesOfTheirOwn) {
 TEST_F(CnControl, NodesCountTheLanesThatEnterThem) {
   run(pes_where([](int pe) { return pe != 0 && pe < 16; }), [&] {
     poly<std::int32_t> left = cn::pe_num() >> 3;  // 0 in the first strip, 1 in the second
-    cn::poly_while([&] { return left > 0; }, [&] { left.become(left - 1); });
+    cn::poly_while([&] { return left > 0; }, [&] { left.assign_all_lanes(left - 1); });
   });
   const IssueTree::Node& root = issue_tree.root();
   EXPECT_EQ(root.enabled_lanes, 15u);

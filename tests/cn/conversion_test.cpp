@@ -21,7 +21,7 @@ class CnConversion : public test_support::StripFixture {
  protected:
   CnConversion() : StripFixture(1024) {}
 
-  /// Values of From that To can hold (any integer for an integer To: it wraps).
+  /// Values of From that To can hold; an integer To holds any integer, as it wraps.
   template <class To, class From>
   void expect_converts() {
     PerPe<From> from = per_pe<From>();
@@ -70,7 +70,8 @@ TEST_F(CnConversion, ConvertsBetweenAllFormats) {
   expect_converts_to_all<std::uint64_t>();
 }
 
-/// C++ leaves this open, and so did the x86-64 levels: what a PE gets must not depend on the host.
+/// C++ and the x86-64 levels leave this undefined; a PE's result must not depend on the processor that
+/// simulates it.
 TEST_F(CnConversion, NumbersOutOfRangeGiveTheSameBitsAtEveryLevel) {
   const std::vector<std::pair<double, std::uint32_t>> known{{-1.5, 0xffffffffu},
                                                             {-2.0, 0xfffffffeu},

@@ -17,7 +17,7 @@ class CnExact : public test_support::StripFixture {
  protected:
   CnExact() : StripFixture(1024) {}
 
-  /// Of every mantissa, between 2^-exponent and 2^exponent in size.
+  /// Returns a number of any mantissa, between 2^-exponent and 2^exponent in size.
   PerPe<double> numbers(int exponent) {
     PerPe<double> numbers = per_pe<double>();
     std::uniform_real_distribution<double> mantissa(1.0, 2.0);
@@ -30,7 +30,7 @@ class CnExact : public test_support::StripFixture {
   std::mt19937_64 random_{23};
 };
 
-/// The host's fused operation rounds once, and what a product's rounding leaves out is a double.
+/// The processor's fused operation rounds once, and the rounding error of a product is a double.
 TEST_F(CnExact, AProductsErrorIsWhatRoundingLeftOut) {
   int inexact = 0;
   for (const int exponent : {0, 1, 60, 400}) {
@@ -73,7 +73,7 @@ TEST_F(CnExact, TheNearestPowerOfTwoIsWithinAFactorOfItsRoot) {
   }
 }
 
-/// Whatever rounding does to a power of two, it is the nearest still.
+/// However a power of two is rounded, it stays the nearest.
 TEST_F(CnExact, APowerOfTwoIsItsOwnNearestAndInvertedExactly) {
   for (int first = -1022; first <= 1022; first += num_pes()) {
     PerPe<double> powers = per_pe<double>(1.0);

@@ -30,7 +30,7 @@ class CnFloatBits : public test_support::StripFixture {
  protected:
   CnFloatBits() : StripFixture(1024) {}
 
-  /// Of any kind: NaN, infinities, zeros and denormals among them.
+  /// Returns a float of any kind, among them NaN, infinities, zeros and denormals.
   PerPe<float> floats() {
     constexpr std::uint32_t kChosen[] = {0x00000000u, 0x80000000u, 0x00000001u, 0x807fffffu,
                                          0x3f800000u, 0x7f7fffffu, 0x7f800000u, 0xff800000u};
@@ -45,7 +45,7 @@ class CnFloatBits : public test_support::StripFixture {
     for (std::uint64_t& number : numbers) number = random_();
     return numbers;
   }
-  /// Bits, as a NaN is not equal to itself.
+  /// Compares bits, because a NaN is not equal to itself.
   static void expect_bits(float found, std::uint32_t expected) {
     ASSERT_EQ(bits<std::uint32_t>(found), expected);
   }
@@ -143,7 +143,7 @@ TEST_F(CnFloatBits, ComparingCostsTheIntegerUnit) {
   EXPECT_EQ(issued_by([&] { cn::byte_of<3>(a); }), byte(1));
 }
 
-/// Denormals and the largest double among them.
+/// The words include denormals and the largest double.
 TEST_F(CnFloatBits, WordsOfFiniteDoublesArePutInOrder) {
   constexpr std::uint64_t kLargest = 0x7fefffffffffffffu;
   constexpr std::uint64_t kChosen[] = {0, 1, 0x000fffffffffffffu, 0x7f800000ffffffffu, kLargest};

@@ -20,7 +20,7 @@ using test_support::PerPe;
 using test_support::same;
 using test_support::store;
 
-/// Poly memory full of random words, and addresses of which those of PEs that take no part lead anywhere.
+/// Poly memory full of random words, with random addresses; those of disabled PEs lead anywhere.
 class CnIndexed : public test_support::StripFixture {
  protected:
   static constexpr int kPes = 64;
@@ -44,7 +44,7 @@ class CnIndexed : public test_support::StripFixture {
                                        : static_cast<std::int32_t>(random_());
     return addresses;
   }
-  /// As each PE sees its own SRAM.
+  /// Reads a value as each PE sees its own SRAM.
   template <class T>
   T at(int pe, std::int32_t address) const {
     const std::uint64_t word = memory.word(pe, address / 8 * 8);
@@ -95,7 +95,7 @@ TEST_F(CnIndexed, StoresReachEachPesOwnPlaceAndNothingElse) {
   }
 }
 
-/// Where a condition holds on some PEs only, the addresses of the others may be anything, too.
+/// Where a condition holds on some PEs only, the other PEs' addresses may be anything, too.
 TEST_F(CnIndexed, ConditionsGuardAddresses) {
   const PerPe<std::int32_t> address = addresses(LaneMask::first(kPes / 2), 8);
   PerPe<std::uint64_t> doubled = per_pe<std::uint64_t>();

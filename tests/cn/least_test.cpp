@@ -16,7 +16,7 @@ void find_least(const LeastOf& arguments) {
   cn::keep_least(arguments.value.read(), 16, *arguments.least);
 }
 
-/// Of the enabled PEs only, over all strips.
+/// The least value is that of the enabled PEs only, over all strips.
 TEST(KeepLeast, FindsTheLeastOfTheEnabledPes) {
   constexpr int kPes = 40;
   cn::PolyMemory memory(kPes, 64);

@@ -287,8 +287,8 @@ TEST_F(CnMachine, SwazzleMovesToTheNeighbourAndEndsKeepTheirs) {
   EXPECT_EQ(machine.issued, counts({{InstructionClass::swazzle, 2}, {InstructionClass::sram, 8}}));
 }
 
-/// The paper's numbering, walked: a running count of the chosen PEs by doubling distance along the path.
-/// Returns each PE's number and leaves what it issued.
+/// The paper's numbering, step by step: a running count of the chosen PEs by doubling distance along the
+/// path. Returns each PE's number and leaves what it issued.
 std::vector<std::int32_t> walk_numbers(CountingMachine& machine, const LaneMask& chosen) {
   const PolyField<std::int64_t> sum{0};
   const PolyField<std::int64_t> moving{8};

@@ -24,7 +24,7 @@ using test_support::store;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Distance in units of the last place of a double of the exact value's size.
+/// Returns the distance in units of the last place of a double of the exact value's size.
 double ulps(double found, long double exact) {
   const double rounded = static_cast<double>(exact);
   const double next = std::nextafter(std::abs(rounded), kInfinity);
@@ -141,7 +141,8 @@ TEST_F(CnMath, LogarithmOfSpecialValues) {
   for (const double a : {-1.0, -kInfinity, kNan}) EXPECT_TRUE(std::isnan(apply_one(a, logarithm))) << a;
 }
 
-/// The bits that every x86-64 level must give: this test is built for each. (Taken once from the SSE2 build.)
+/// The bits that every x86-64 level must give; this test is built for each level. (Taken once from the SSE2
+/// build.)
 TEST_F(CnMath, EveryLevelGivesTheSameBits) {
   const auto ignore_error = [](long double) { return 0.0L; };
   largest_error(-7.0, 7.0, sine, ignore_error);
@@ -155,7 +156,7 @@ TEST_F(CnMath, EveryLevelGivesTheSameBits) {
 
 class CnArcTangent : public CnMath {
  protected:
-  /// Results for points (x, y), one a PE.
+  /// Results for points (x, y), one for each PE.
   PerPe<double> angles(const PerPe<double>& y, const PerPe<double>& x) {
     PerPe<double> found = per_pe<double>();
     run([&] { store(found, cn::atan2(load(y), load(x))); });

@@ -146,7 +146,7 @@ class PolyFieldTest : public test_support::StripFixture {
     before_ = test_support::poly_words(memory, 1024);
   }
 
-  /// The bytes of `T` at `offset` in a PE's SRAM.
+  /// Returns the bytes of `T` at `offset` in a PE's SRAM.
   template <class T>
   T in_sram(const std::vector<std::uint64_t>& words, int offset, int pe) const {
     T value;

@@ -38,7 +38,7 @@ class CnPoly4 : public test_support::StripFixture {
     return {load(values[0]), load(values[1]), load(values[2]), load(values[3])};
   }
 
-  /// `expected` of a PE and an element.
+  /// `expected` takes a PE and an element.
   void expect(const std::function<poly4<T>()>& operation,
               const std::function<T(std::size_t, std::size_t)>& expected) {
     PerPe<T> found[4] = {per_pe<T>(), per_pe<T>(), per_pe<T>(), per_pe<T>()};
@@ -79,7 +79,7 @@ TYPED_TEST(CnPoly4, MonoOperandIsOneValueOrOneForEachElement) {
   this->expect([&] { return a() + this->monos; }, [&](auto pe, auto e) { return x[e][pe] + this->monos[e]; });
 }
 
-/// The kernels are compiled for machines with fused multiply-add, too.
+/// Kernels are also compiled for machines with fused multiply-add.
 TYPED_TEST(CnPoly4, MultiplyAddRoundsTwice) {
   const auto& x = this->first;
   const auto& y = this->second;
@@ -112,7 +112,7 @@ TYPED_TEST(CnPoly4, IssuesOneVectorInstructionAndItsMonoOperands) {
   issues(counts({{InstructionClass::move, 4}}), [&] { select(cn::mask{}, a, a); });
   issues(counts({}), [&] {
     poly4<TypeParam> copy = a;
-    copy.become(a);
+    copy.assign_all_lanes(a);
   });
 }
 
@@ -170,7 +170,7 @@ TEST_F(CnPolyArray, StoreReachesEnabledPesOnly) {
     }
 }
 
-/// Also from strip to strip.
+/// Values travel from strip to strip, too.
 TEST_F(CnPolyArray, SwazzleBringsWhatThePeSoManyStepsAwayHas) {
   const PolyArray<std::uint64_t> array(span);
   for (const int steps : {1, -1, 5, -8, 16, -23, 24}) {
@@ -197,8 +197,8 @@ TEST_F(CnPolyArray, AccessesCountWordsAndSteps) {
             counts({{InstructionClass::sram_vector_load, 8}, {InstructionClass::swazzle_vector4, 2}}));
 }
 
-/// A walk along the path, register by register: each step brings the right neighbour's vector, and before
-/// each `feeders` steps the last PEs take another of their own.
+/// Walks along the path, register by register: each step brings the right neighbour's vector. Before each
+/// `feeders` steps the last PEs take another vector of their own.
 class Walk {
  public:
   Walk(int num_pes, int feeders) : at_(std::size_t(num_pes)), feeders_(feeders) {
@@ -209,7 +209,7 @@ class Walk {
     for (std::size_t pe = 0; pe + 1 < at_.size(); ++pe) at_[pe] = at_[pe + 1];
     if (number % feeders_ == 0) feed(number / feeders_);
   }
-  /// Place and PE that what PE `pe` has was loaded from.
+  /// Returns the place and the PE from which PE `pe`'s value was loaded.
   std::pair<int, int> source(int pe) const { return at_[std::size_t(pe)]; }
 
  private:
@@ -243,7 +243,7 @@ TEST_F(CnPolyArray, StreamBringsWhatAWalkAlongThePathDoes) {
   }
 }
 
-/// Strips are executed one after the other; PEs before the feeders end with what was 8 PEs to the right.
+/// Strips are executed one after the other. PEs before the feeders end with the value of 8 PEs to the right.
 TEST_F(CnPolyArray, StreamMayLeaveItsVectorsWhereTheyStarted) {
   const PolyArray<std::uint64_t> array(span);
   const cn::VectorStream<std::uint64_t> stream(array, 0, array, 4, 8);

@@ -34,7 +34,7 @@ class CnPoly : public test_support::StripFixture {
  protected:
   CnPoly() : StripFixture(1024), a(per_pe<T>()), b(per_pe<T>()) { fill_pairs(a, b); }
 
-  // Type-erased, which makes one kernel a type of it all: GCC takes a second for each.
+  // Type-erased, so that all kernels have one type: GCC takes a second for each type.
   using OnPoly = std::function<poly<T>(const poly<T>&, const poly<T>&)>;
   using OnScalar = std::function<T(T, T)>;
 
@@ -52,7 +52,7 @@ class CnPoly : public test_support::StripFixture {
         ADD_FAILURE() << a[i] << " " << what << " " << b[i] << ": " << found[i] << ", not " << expected[i];
   }
 
-  /// Poly with poly, and each side mono.
+  /// Tries poly with poly, and a mono operand on each side.
   template <class Operation>
   void expect_same_operation(const char* what, Operation operation) {
     const auto on_scalar = [&](T x, T y) { return scalar(operation, x, y); };
@@ -151,7 +151,7 @@ TYPED_TEST(CnPoly, AssignmentReachesEnabledPesOnly) {
     x = load(this->b);
     store(assigned, x);
     poly<TypeParam> y = load(this->a);
-    y.become(load(this->b));
+    y.assign_all_lanes(load(this->b));
     store(renamed, y);
     const poly<TypeParam> copy = y;
     store(fresh, copy);
@@ -231,7 +231,7 @@ TYPED_TEST(CnPoly, IssuesOneInstructionAnOperator) {
   issues(counts({{InstructionClass::move, 1}}), [&] { cn::select(mask{}, x, y); });
   issues(counts({}), [&] {
     poly<TypeParam> copy = x;
-    copy.become(y);
+    copy.assign_all_lanes(y);
   });
 }
 

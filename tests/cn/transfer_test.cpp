@@ -18,10 +18,10 @@ constexpr int kPes = 24;
 constexpr int kPolyBytes = 512;
 constexpr int kOffsetBytes = 16;
 constexpr std::size_t kMonoBytes = 1 << 14;
-constexpr MonoAddress kNowhere = ~MonoAddress{7};  // of a disabled PE
+constexpr MonoAddress kNowhere = ~MonoAddress{7};  // address of a disabled PE
 
-/// Moves on a copy of both memories, PE by PE and word by word, and compares all of both with what move_data
-/// did.
+/// Moves the data on a copy of both memories, PE by PE and word by word, and compares all of both memories
+/// with the result of move_data.
 class CnTransfer : public testing::Test {
  protected:
   CnTransfer() : poly(kPes, kPolyBytes), mono(kMonoBytes) {
@@ -46,7 +46,7 @@ class CnTransfer : public testing::Test {
     ASSERT_EQ(mono, expected_mono) << words;
   }
 
-  /// Full, empty and partly enabled strips.
+  /// Masks with full, empty and partly enabled strips.
   cn::LaneMask some_pes() {
     cn::LaneMask pes;
     for (int strip = 0; strip < kPes / cn::kStripLanes; ++strip)

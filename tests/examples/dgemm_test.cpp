@@ -11,7 +11,7 @@ using test_support::run_natively;
 using test_support::verdict;
 using testbench::dgemm_run;
 
-/// Blocks of C, and panels.
+/// Tries several numbers of blocks of C and of panels.
 Dgemm::Problem problem(Dgemm::Shape shape, int row_blocks, int column_blocks, int panels) {
   Dgemm::Problem problem;
   problem.shape = shape;

@@ -69,7 +69,8 @@ TEST(FftExample, ImpulseBecomesAWaveAndAWaveAnImpulse) {
     }
 }
 
-/// Twice forward is the image mirrored and scaled; the transposed result mirrors without transposing twice.
+/// Two forward transforms give the image mirrored and scaled. The results are transposed, and two
+/// transpositions cancel.
 TEST(FftExample, TwiceGivesTheMirroredImage) {
   Image image(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i)

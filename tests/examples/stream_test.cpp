@@ -83,8 +83,7 @@ TEST_F(StreamExample, ThreadsHideTheKernelsBehindTheCopies) {
   RecordProperty("alone_cycles", std::to_string(alone.total()));
   RecordProperty("with_threads_cycles", std::to_string(with_threads.total()));
   EXPECT_EQ(with_threads[model::CycleCause::poly], alone[model::CycleCause::poly]);
-  // Copies take longer than kernels here. The engine has nothing to do in the first kernel at most, and in
-  // the last.
+  // Copies take longer than kernels here. PIO is idle in the first kernel at most, and in the last.
   const auto hidden = alone.exposed_pio() - with_threads.exposed_pio();
   EXPECT_GT(alone.exposed_pio(), alone[model::CycleCause::poly]);
   EXPECT_GE(hidden, alone[model::CycleCause::poly] * 7 / 9);

@@ -159,7 +159,7 @@ TEST(BrokenFirmware, KernelsThatReportNothingAreRefused) {
                                          {0, 1})
                      .run({});
                }),
-               {"kernel 'replace' is not built to report"});
+               {"kernel 'continue_paths' is not built to report"});
 }
 
 }  // namespace hazard_mutation_test

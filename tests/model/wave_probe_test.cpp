@@ -237,8 +237,8 @@ TEST_F(WaveProbe, LateReportsAreCountedAndShownLate) {
 
 TEST_F(WaveProbe, BlocksAreNamedByWhatTheFirmwareSays) {
   make_probe();
-  const char* const rays = "ray bin";
-  const char* const paths = "path bin";
+  const char* const rays = "ray stage";
+  const char* const paths = "path stage";
   simulate([&](Reporter& reporter) {
     const auto compute = [&](const cn::Label& label, Cycles start, Cycles finish) {
       probe->kernel_details({nullptr, nullptr, label});
@@ -263,7 +263,7 @@ TEST_F(WaveProbe, BlocksAreNamedByWhatTheFirmwareSays) {
   probe->finish();
   const VcdReader vcd = this->vcd();
   EXPECT_EQ(probe->bin_names(), (std::vector<std::string>{rays, paths}));
-  EXPECT_EQ(changes(vcd, "bins.compute_bin"), (List{{0, 0}, {10'000, 1}, {40'000, 2}, {50'000, 0}}));
+  EXPECT_EQ(changes(vcd, "bins.compute_stage"), (List{{0, 0}, {10'000, 1}, {40'000, 2}, {50'000, 0}}));
   EXPECT_EQ(changes(vcd, "bins.compute_block"),
             (List{{0, model::kNoBlock}, {10'000, 3}, {30'000, 4}, {50'000, model::kNoBlock}}));
   EXPECT_EQ(changes(vcd, "bins.load_block"), (List{{0, model::kNoBlock}, {12'000, 5}}));

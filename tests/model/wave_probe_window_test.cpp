@@ -119,9 +119,9 @@ TEST_F(WaveProbeWindow, WindowsOfBlocksBeginWithTheirKernels) {
   simulate([&](Reporter& reporter) {
     for (int block = 0; block < 5; ++block) {
       const Cycles start = 100 * Cycles(block) + 10;
-      probe->kernel_details({nullptr, nullptr, {"bin", block}});
+      probe->kernel_details({nullptr, nullptr, {"stage", block}});
       probe->ran_kernel("first", start, start + 20, 8);
-      probe->kernel_details({nullptr, nullptr, {"bin", block}});
+      probe->kernel_details({nullptr, nullptr, {"stage", block}});
       probe->ran_kernel("second", start + 20, start + 50, 8);
       if (block % 2 == 1) reporter.wait_until(start + 50);
     }
@@ -140,7 +140,7 @@ TEST_F(WaveProbeWindow, BlockThatIsNeverReachedIsReported) {
   config.blocks = {{7, 1}};
   make_probe(config);
   simulate([&](Reporter& reporter) {
-    probe->kernel_details({nullptr, nullptr, {"bin", 0}});
+    probe->kernel_details({nullptr, nullptr, {"stage", 0}});
     probe->ran_kernel("kernel", 0, 20, 8);
     reporter.wait_until(20);
   });

@@ -35,7 +35,7 @@ class BoxTest : public test_support::StripFixture {
     bool met(std::size_t pe) const { return entry[pe] <= exit[pe]; }
   };
 
-  /// One ray and one box a PE.
+  /// One ray and one box for each PE.
   Found slabs(const PerPe<Ray>& rays, const PerPe<Box>& boxes) {
     PerPe<Vector> origins, directions, lowers, uppers;
     for (const Ray& ray : rays) {
@@ -68,14 +68,15 @@ class BoxTest : public test_support::StripFixture {
     return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
             {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
   }
-  /// Random ones, flat ones, and points.
+  /// Returns a random box, a flat one or a point.
   Box inner_box(double scale) {
     Box box = around(point(scale), point(scale));
     for (double Vector::*component : kComponents)
       if (one_of(4) == 0) box.upper.*component = box.lower.*component;
     return box;
   }
-  /// Each side is the inner one's, or the next double, or far out, or what fp32 makes of large numbers.
+  /// Returns a box around another: each side is the inner one's, the next double, far out, or what fp32 makes
+  /// of large numbers.
   Box outer_box(const Box& inner, double scale) {
     Box outer = inner;
     for (double Vector::*component : kComponents) {
@@ -96,8 +97,8 @@ class BoxTest : public test_support::StripFixture {
     }
     return outer;
   }
-  /// From anywhere or from a side's plane; towards anywhere, a corner, or with components that are hardly
-  /// any.
+  /// Returns a ray from anywhere or from a side's plane; towards anywhere or a corner, or with some
+  /// components close to 0.
   Ray ray_for(const Box& box, double scale) {
     Ray ray{point(2 * scale), point(1.0)};
     if (one_of(2) == 0) {
@@ -117,7 +118,7 @@ class BoxTest : public test_support::StripFixture {
   std::mt19937_64 random_{41};
 };
 
-/// That is all that the tree asks of the test, and it must hold to the last bit.
+/// The tree asks no more of the test, and it must hold to the last bit.
 TEST_F(BoxTest, ARayThatMeetsABoxMeetsEveryBoxAroundItAndEntersThatNoLater) {
   int met = 0;
   int missed = 0;
@@ -144,7 +145,7 @@ TEST_F(BoxTest, ARayThatMeetsABoxMeetsEveryBoxAroundItAndEntersThatNoLater) {
   EXPECT_GT(missed, 20000);
 }
 
-/// With some distance to what rounding decides.
+/// Keeps a distance from cases that rounding decides.
 TEST_F(BoxTest, TheSlabsAreWhereTheRayIsInTheBox) {
   int met = 0;
   for (int round = 0; round < 80; ++round) {
@@ -178,7 +179,7 @@ TEST_F(BoxTest, TheSlabsAreWhereTheRayIsInTheBox) {
   EXPECT_GT(met, 2000);
 }
 
-/// Keys of nodes are the upper halves of entries as integers: there -0 would be the last of all.
+/// Keys of nodes are the upper halves of entries as integers, of which -0 would be the largest.
 TEST_F(BoxTest, FromWithinAndFromTheSidesTheEntryIsPlusZero) {
   const Box unit{{-1, -1, -1}, {1, 1, 1}};
   PerPe<Ray> rays;
@@ -196,7 +197,7 @@ TEST_F(BoxTest, FromWithinAndFromTheSidesTheEntryIsPlusZero) {
   }
 }
 
-/// On a side's plane itself either answer will do: boxes of triangles are padded.
+/// On a side's plane itself either answer is right, because boxes of triangles are padded.
 TEST_F(BoxTest, ComponentsOfZeroMeetWhatTheyPassBetween) {
   const Box flat{{0, 0, -1e-12}, {1, 1, 1e-12}};
   const Ray hits[] = {{{0.5, 0.5, -1}, {0, 0, 1}},                // through it
@@ -212,7 +213,7 @@ TEST_F(BoxTest, ComponentsOfZeroMeetWhatTheyPassBetween) {
   for (const Ray& ray : misses) EXPECT_FALSE(meets(ray, flat)) << &ray - misses;
 }
 
-/// What is rounded is at most two units in the last place beside the exact quotient.
+/// The result is at most two units in the last place from the exact quotient.
 TEST_F(BoxTest, TheLatestEntryIsNotBeforeTheExactDistance) {
   PerPe<double> numerators = per_pe<double>();
   PerPe<double> sizes = per_pe<double>();

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/layout.hpp"
 #include "tests/support/strip_fixture.hpp"
 
 namespace light_sampling_test {
@@ -186,7 +186,7 @@ TEST_F(LightSamplingTest, IrradianceIsLambertsFormFactor) {
     const Mean found = mean_of(s, LightSampling::solid_angle,
                                [&](const Vector&, double weight) { return positive(weight) * area(s); });
     EXPECT_NEAR(found.mean, expected, 4.5 * found.deviation + 1e-9 * expected) << s.name;
-    // What the warp leaves: with a plain solid angle it would be the spread of the cosine.
+    // The spread that remains after the warp; with a plain solid angle it would be the spread of the cosine.
     EXPECT_LT(found.deviation, 2.5e-3 * expected) << s.name;
   }
 }
@@ -224,7 +224,7 @@ TEST_F(LightSamplingTest, TheDensityIntegratesToOne) {
   }
 }
 
-/// Means over the light of a function that is odd about its middle would show samples at the wrong places.
+/// Means over the light of an odd function about its middle would reveal samples at the wrong places.
 TEST_F(LightSamplingTest, WeightsBelongToTheirDirections) {
   for (const Setting& s : settings()) {
     if (s.shape == LightShape::rectangle) continue;

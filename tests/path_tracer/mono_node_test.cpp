@@ -34,7 +34,7 @@ BvhNode random_node(std::mt19937_64& random, int children) {
   return node;
 }
 
-/// A block that shares its way must meet the boxes that a ray alone would.
+/// A packet must meet the boxes that a single ray would.
 TEST_P(MonoNodes, AreWhatTheHostDecodes) {
   const NodeLayout layout = GetParam();
   const auto node_bytes = std::size_t(layout.node_bytes());

@@ -31,7 +31,7 @@ float rounded_down(double number) {
   return double(nearest) <= number ? nearest : std::nextafter(nearest, -INFINITY);
 }
 
-/// A scene of that size: boxes and origins lie within, ways are no longer than its reach.
+/// A scene of that size: boxes and origins lie within it, and no distance exceeds its reach.
 class SingleNodeRayTest : public test_support::StripFixture, public testing::WithParamInterface<double> {
  protected:
   SingleNodeRayTest() : StripFixture(1024) {}
@@ -43,7 +43,7 @@ class SingleNodeRayTest : public test_support::StripFixture, public testing::Wit
   Vector point() { return {number(scale()), number(scale()), number(scale())}; }
   std::size_t one_of(std::size_t count) { return random_() % count; }
 
-  /// Of all sizes, flat ones and points, some of them at the origin of coordinates.
+  /// Returns a box of any size; some are flat, some are points, some lie at the origin of coordinates.
   Box box() {
     const Vector a = point();
     Vector b = point();
@@ -61,8 +61,8 @@ class SingleNodeRayTest : public test_support::StripFixture, public testing::Wit
     return box;
   }
 
-  /// From anywhere, a side's plane or a corner; towards a corner, nearly so or anywhere; of all lengths, with
-  /// components that are hardly any.
+  /// Returns a ray from anywhere, from a side's plane or from a corner; towards a corner, nearly so or
+  /// anywhere; of any length, with some components close to 0.
   Ray ray_for(const Box& box) {
     const auto corner = [&] {
       return Vector{one_of(2) == 0 ? box.lower.x : box.upper.x, one_of(2) == 0 ? box.lower.y : box.upper.y,
@@ -77,7 +77,7 @@ class SingleNodeRayTest : public test_support::StripFixture, public testing::Wit
       constexpr double kHardlyAny[] = {0.0, -0.0, 1e-60, -1e-30, 1e-18, -1e-9};
       if (one_of(5) == 0) ray.direction.*component = scale() * kHardlyAny[one_of(std::size(kHardlyAny))];
     }
-    if (one_of(3) == 0) {  // past what it was aimed at
+    if (one_of(3) == 0) {  // beyond its target
       const double off = scale() * std::ldexp(1.0, -int(one_of(40)));
       ray.direction = ray.direction + Vector{number(off), number(off), number(off)};
     }
@@ -134,9 +134,9 @@ class SingleNodeRayTest : public test_support::StripFixture, public testing::Wit
                                  const path_tracer::PlaneOperands<float>& operands) {
           return (operands.origin - plane) * operands.scale;
         };
-        entry.become(SingleNodeRay::greater(
+        entry.assign_all_lanes(SingleNodeRay::greater(
             entry, distance(cn::select(ray.backward(axis), above, below), ray.first(axis))));
-        exit.become(SingleNodeRay::lesser(
+        exit.assign_all_lanes(SingleNodeRay::lesser(
             exit, distance(cn::select(ray.backward(axis), below, above), ray.last(axis))));
       }
       store(found.narrow, ray.entry_of(entry, exit, kReference));
@@ -147,7 +147,7 @@ class SingleNodeRayTest : public test_support::StripFixture, public testing::Wit
   std::mt19937_64 random_{43};
 };
 
-/// In units of the direction's length, as its own entry.
+/// Measured in lengths of the direction, as the ray's own entry.
 double entry_of(std::uint64_t word, const Ray& ray, double unit) {
   const auto bits = static_cast<std::uint32_t>(word >> 32);
   float entry;
@@ -158,7 +158,7 @@ double entry_of(std::uint64_t word, const Ray& ray, double unit) {
   return double(entry) / length / unit;
 }
 
-/// That is what makes the hits of a tree of floats those of any other.
+/// So a tree of floats gives the same hits as any other.
 TEST_P(SingleNodeRayTest, MeetsWhatBoxRayMeetsAndEntersItNoLater) {
   const double unit = to_node_unit(NodeFormat::fp32, reach());
   int met = 0;
@@ -182,7 +182,7 @@ TEST_P(SingleNodeRayTest, MeetsWhatBoxRayMeetsAndEntersItNoLater) {
   EXPECT_GT(missed, 15000);
 }
 
-/// Roundings are below that many units of the node, so what misses a box by more is not let through.
+/// Rounding is below that many units of the node, so a ray that misses a box by more is rejected.
 TEST_P(SingleNodeRayTest, MissesWhatIsSomeRoundingsAway) {
   const double margin = 0x1p-18 / to_node_unit(NodeFormat::fp32, reach());
   int missed = 0;
@@ -206,7 +206,7 @@ TEST_P(SingleNodeRayTest, MissesWhatIsSomeRoundingsAway) {
   EXPECT_GT(missed, 5000);
 }
 
-/// The limit is rounded, too: a box that is entered where it is of use at the latest is met.
+/// The limit is rounded, too: a box is met if it is entered at the latest distance that matters.
 TEST_P(SingleNodeRayTest, MeetsWhatIsEnteredAtTheLimit) {
   int met = 0;
   int too_late = 0;

@@ -1,5 +1,5 @@
-// The firmware on a machine whose transfers finish as late as its waits allow: whatever is used before it was
-// waited for is garbage there. The results must be those of a machine without any overlap, bit for bit.
+// The firmware on a machine whose transfers finish as late as its waits allow: data that are used before they
+// were waited for are garbage there. The results must be those of a machine without any overlap, bit for bit.
 
 #include <gtest/gtest.h>
 
@@ -111,8 +111,8 @@ Results without_overlap(const ProgramConfig& config, int num_pes, path_tracer::R
   return host.results();
 }
 
-/// @param prompt_host reads results when they are announced, the other one when the firmware cannot go on
-/// without
+/// @param prompt_host whether the host reads results when they are announced; otherwise it reads them when
+/// the firmware cannot continue without
 Results with_overlap(const ProgramConfig& config, int num_pes, double eagerness, bool prompt_host) {
   const testbench::MonoImage image = testbench::make_mono_image(make_scene(), num_pes, config);
   test_support::LateMachine machine(num_pes, 6144, image.layout.total_bytes, eagerness);
@@ -196,7 +196,7 @@ TEST_P(Overlap, NeitherDoesTheShapeOfTheBins) {
   }
 }
 
-/// Where a path is cut into slots decides how its recursion is rounded, and nothing else.
+/// The length of a slot decides only how a path's recursion is rounded.
 TEST_P(Overlap, LengthOfTheSlotsChangesTheRoundingOnly) {
   const Results expected = without_overlap(small_program(GetParam(), 0), 16);
   for (const int slot_vertices : {8, 12, 64}) {
@@ -218,7 +218,7 @@ TEST_P(Overlap, NorAHostThatReadsAtTheLastMoment) {
     EXPECT_EQ(with_overlap(small_program(GetParam(), n), 16, 0.0, false), expected) << n;
 }
 
-/// Copies of a kind, and how many of them were waited for by the very next call.
+/// Copies of one kind, and how many of them were waited for by the very next call.
 struct Copies {
   int all = 0;
   int waited_for_at_once = 0;

@@ -1,4 +1,4 @@
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/program_config.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using path_tracer::PathTracer;
 using path_tracer::Program;
 using path_tracer::ProgramConfig;
 
-/// The message of the ProgramError that a configuration causes; "" if it is accepted.
+/// Returns the message of the ProgramError that a configuration causes; "" if it is accepted.
 std::string error_of(const ProgramConfig& config) {
   try {
     path_tracer::validate(config);
@@ -73,7 +73,7 @@ TEST(ProgramConfigTest, ErrorsNameArgumentValueAndWhatIsAllowed) {
               "max_survival: found " + std::string(text) + ", allowed is a number above 0 and below 1");
 }
 
-/// The message for a tree of that shape.
+/// Returns the message for a tree of that shape.
 std::string error_of(const path_tracer::TreeShape& tree) {
   ProgramConfig config;
   config.tree = tree;
@@ -216,7 +216,7 @@ TEST(LayoutTest, RegionsAreAlignedApartAndWithinTheirParts) {
   }
 }
 
-/// By name, in the order in which they lie.
+/// Checks the regions by name, in the order of their addresses.
 TEST(LayoutTest, TreesAddRegionsOfTheirOwn) {
   ProgramConfig config;
   config.traversal = path_tracer::Traversal::temporary_bin;
@@ -233,12 +233,12 @@ TEST(LayoutTest, TreesAddRegionsOfTheirOwn) {
   }
   EXPECT_LE(end, layout.total_bytes);
   EXPECT_EQ(layout.triangle_count, 37);
-  // Two triangles a light behind the scene's, and room for a whole leaf behind the last.
+  // Two triangles for each light follow the scene's, with room for a whole leaf behind the last.
   EXPECT_EQ(bytes["triangles"], (37 + 2 * 5 + 4) * sizeof(path_tracer::TriangleRecord));
   EXPECT_EQ(bytes["surfaces"], 37 * sizeof(path_tracer::SurfaceRecord));
   EXPECT_EQ(bytes["nodes"], 11u * std::uint64_t(config.tree.layout.node_bytes()));
   EXPECT_LE(layout.nodes.address + bytes["nodes"], layout.scene_bytes);
-  EXPECT_EQ(bytes["ray bin"], slots * sizeof(path_tracer::QueuedRay));
+  EXPECT_EQ(bytes["ray queue"], slots * sizeof(path_tracer::QueuedRay));
   EXPECT_EQ(bytes["surface place bin"], slots * sizeof(cn::MonoAddress));
   EXPECT_EQ(bytes["traversal bin"], 96 * std::uint64_t(path_tracer::traversal_bin_blocks(config)) *
                                         std::uint64_t(config.tree.record_bytes()));
@@ -247,7 +247,7 @@ TEST(LayoutTest, TreesAddRegionsOfTheirOwn) {
     EXPECT_STRNE(r.name, "traversal bin") << "rays stay in their PE";
 }
 
-/// A program set up on a machine of its own; nothing runs.
+/// A program that is set up on a machine of its own and does not run.
 struct PreparedProgram {
   PreparedProgram(const ProgramConfig& config, int sram_bytes, int num_pes = 96)
       : layout(make_layout({2, 1}, num_pes, config)), machine(num_pes, sram_bytes, layout.total_bytes) {

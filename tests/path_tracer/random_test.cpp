@@ -37,7 +37,7 @@ class Random : public test_support::StripFixture {
     return draws;
   }
 
-  /// All samples, 0 to 255, of 1024 neighbouring pixels.
+  /// Visits all samples, 0 to 255, of 1024 neighbouring pixels.
   template <class Visit>  // (const Draws&, sample) -> void
   void for_each_draw(std::uint64_t seed, int depth, Purpose purpose, Visit&& visit) {
     PerPe<std::int32_t> pixel = per_pe<std::int32_t>();
@@ -46,7 +46,7 @@ class Random : public test_support::StripFixture {
       visit(draw(seed, pixel, per_pe(sample), per_pe(depth), purpose), sample);
   }
 
-  /// The 32 random bits behind a uniform number.
+  /// Returns the 32 random bits behind a uniform number.
   static std::uint32_t word_of(double uniform) {
     const double word = uniform * 4294967296.0 - 0.5;
     EXPECT_EQ(word, std::floor(word));
@@ -113,8 +113,7 @@ TEST_F(Random, EqualsPhiloxForAnyCounterAndSeed) {
   }
 }
 
-/// Philox is invertible: these are the counters that seed 1 turns into nothing but zeros, and nothing but
-/// ones.
+/// Philox is invertible: seed 1 turns these counters into all zeros and all ones.
 TEST_F(Random, TheRangeIsOpen) {
   const auto draw_counter = [&](const Words& counter) {
     const auto word = [&](std::size_t i) { return per_pe(static_cast<std::int32_t>(counter[i])); };
@@ -149,7 +148,8 @@ TEST_F(Random, IsEquidistributed) {
   }
 }
 
-/// Sum of products of deviations from the mean; of independent numbers it is a standard normal deviate.
+/// Returns the sum of products of deviations from the mean; for independent numbers it is a standard normal
+/// deviate.
 double correlation(const PerPe<double>& a, const PerPe<double>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - 0.5) * (b[i] - 0.5) * 12.0;

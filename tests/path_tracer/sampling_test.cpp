@@ -1,5 +1,6 @@
 #include "firmware/path_tracer/sampling/sampling.hpp"
 
+#include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/sampling/random.hpp"
 
 #include <random>
@@ -41,7 +42,7 @@ class Sampling : public test_support::StripFixture {
   }
   static vec3<double> at(const Vectors& v, std::size_t pe) { return {v.x[pe], v.y[pe], v.z[pe]}; }
 
-  /// Of each PE, what `function` returns there.
+  /// Returns what `function` returns in each PE.
   template <class Function>
   Vectors vectors(Function function) {
     Vectors result{per_pe<double>(), per_pe<double>(), per_pe<double>()};
@@ -67,7 +68,8 @@ const vec3<double> kNormals[] = {
     {1, 0, 0},  {-1, 0, 0},      {0, 1, 0},           {0, -1, 0},          {0, 0, 1},
     {0, 0, -1}, unit({1, 2, 3}), unit({-3, 0.5, -1}), unit({1e-9, 0, -1}), unit({-0.5, -0.7, 0.2})};
 
-/// Cos / pi over the hemisphere: the square of the cosine and the angle around the normal are uniform.
+/// Density cos / pi over the hemisphere: the square of the cosine and the angle around the normal are
+/// uniform.
 TEST_F(Sampling, CosineDensityAroundAnyNormal) {
   for (const vec3<double>& normal : kNormals) {
     SCOPED_TRACE(testing::Message() << normal.x << " " << normal.y << " " << normal.z);
@@ -91,8 +93,8 @@ TEST_F(Sampling, CosineDensityAroundAnyNormal) {
   }
 }
 
-/// Among these points of the sphere is one 1e-9 from the opposite of each axis. Adding the normal leaves a
-/// vector of that length with an error of 1e-16, so the direction may lie in the surface, or up to 1e-7 below
+/// One of these points of the sphere is 1e-9 from the opposite of each axis. Adding the normal leaves a
+/// vector of that length with an error of 1e-16. So the direction may lie in the surface, or up to 1e-7 below
 /// a tilted one.
 TEST_F(Sampling, CosineDirectionsAreFineAtTheEndsOfTheRange) {
   PerPe<double> u = uniform();

@@ -33,7 +33,7 @@ class Sobol : public test_support::StripFixture {
     PerPe<double> v;
     PerPe<double> single;
   };
-  /// One point a PE: sample numbers first_sample, first_sample + 1, ...
+  /// One point for each PE: sample numbers first_sample, first_sample + 1, ...
   Points points(std::uint64_t seed, int pixel, int depth, Purpose purpose, int first_sample = 0) {
     PerPe<std::int32_t> sample = per_pe<std::int32_t>();
     for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = first_sample + static_cast<int>(i);

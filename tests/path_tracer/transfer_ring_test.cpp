@@ -18,7 +18,7 @@ class TransferRingTest : public testing::Test {
  protected:
   static constexpr int kBuffers = 3;
 
-  /// One transfer into the step's buffer, of the record at mono address 64 * step.
+  /// Starts one transfer into the step's buffer, of the record at mono address 64 * step.
   void load(std::uint64_t step, int block) {
     ring.copy_m2p(step, block, ring.buffer(step), MonoPlaces::array(64 * step, 0), LaneMask::first(8));
   }
@@ -119,8 +119,8 @@ TEST_F(TransferRingTest, BookkeepingCostsTheControlUnit) {
 }
 
 /// The order of calls of the firmware's pipeline: loads up to n steps ahead, a wait before each step, saves
-/// that stay under way for n steps. What a step finds in its buffer is what was loaded for it, and no more
-/// steps than buffers are under way.
+/// that stay under way for n steps. A step finds in its buffer what was loaded for it, and no more steps than
+/// buffers are under way.
 TEST_F(TransferRingTest, PipelineKeepsAsManyStepsUnderWayAsThereAreBuffers) {
   for (int i = 0; i < 4096; ++i) machine.mono()[i] = static_cast<std::uint8_t>(i / 64);
   constexpr std::uint64_t kSteps = 20;

@@ -49,7 +49,7 @@ TEST_F(TraversalBinTest, GivesFullBlocksUntilOnlyARestIsLeft) {
   EXPECT_FALSE(bin.take_rest());
 }
 
-/// Behind a rest the next block begins, wherever the rest ended.
+/// The next block begins behind a rest, wherever the rest ended.
 TEST_F(TraversalBinTest, BeginsANewBlockBehindARest) {
   bin.append(3, 1, 0);
   EXPECT_EQ(bin.tail(), 3);
@@ -70,7 +70,7 @@ TEST_F(TraversalBinTest, CountsThePassOfABlocksFirstRay) {
   EXPECT_EQ(bin.pass(1), 2u);
   bin.append(1, 4, 0);
   EXPECT_EQ(bin.take_rest(), 2);
-  EXPECT_EQ(bin.pass(2), 1u) << "nothing of those before is left";
+  EXPECT_EQ(bin.pass(2), 1u) << "no ray of those before is left";
 }
 
 TEST_F(TraversalBinTest, KnowsTheLastStepThatSavedToABlock) {
@@ -101,8 +101,8 @@ TEST_F(TraversalBinTest, LiesInItsRegionBlockByBlock) {
     EXPECT_EQ(bin.address_of(block), bin.address() + std::uint64_t(block * kPes * bin.record_bytes()));
 }
 
-/// Against a queue of ray numbers: what is taken is what was appended, in order, and nothing that was not
-/// taken is overwritten as long as there are no more rays than in the ray bin.
+/// Compares with a queue of ray numbers: rays are taken as they were appended, in order. No ray that was not
+/// taken is overwritten as long as there are no more rays than slots.
 TEST_F(TraversalBinTest, GoesRoundWithoutLosingARay) {
   struct Ray {
     int number;
@@ -142,15 +142,14 @@ TEST_F(TraversalBinTest, GoesRoundWithoutLosingARay) {
   EXPECT_GT(rounds, 50);
 }
 
-/// On a native machine; rays name their slots and lie packed.
+/// Runs on a native machine. Rays name their slots and lie packed.
 class RayQueueTest : public testing::Test {
  protected:
   RayQueueTest() {
     config.traversal = path_tracer::Traversal::refill;
     layout = make_layout({10, 3, 4}, kPes, config);
     machine.emplace(kPes, 6144, layout.total_bytes);
-    saves.emplace(*machine, "save buffer",
-                  TransferRing::Buffers{2, int{sizeof(QueuedRay)} + RayQueue::kPlaceBytes, false});
+    saves.emplace(*machine, "save buffer", TransferRing::Buffers{2, RayQueue::room_bytes(config), false});
     queue.emplace(*machine, kernels, layout);
     light_place = {machine->poly_memory().allocate("light places", sizeof(cn::MonoAddress)).offset_bytes};
     for (int pe = 0; pe < kPes; ++pe)
@@ -158,15 +157,16 @@ class RayQueueTest : public testing::Test {
           (layout.lights + std::uint64_t(pe % 3)).address;
   }
 
-  /// Rays whose x is 100 * step + PE.
-  void enqueue(std::uint64_t step, std::uint64_t first_slot, const cn::LaneMask& with_ray) {
-    const path_tracer::PolyPointer<QueuedRay> ray(saves->buffer(step));
+  /// Rays of a block of slots, whose x is 100 * step + PE.
+  void enqueue(std::uint64_t step, int block, const cn::LaneMask& with_ray) {
+    path_tracer::BufferCutter cutter(saves->buffer(step));
+    const path_tracer::RayRoom room = queue->take_room(cutter);
     saves->wait(step);
     for (int pe = 0; pe < kPes; ++pe) {
       const double x = 100.0 * double(step) + pe;
-      std::memcpy(&machine->poly_memory().word(pe, ray.span().offset_bytes), &x, sizeof(x));
+      std::memcpy(&machine->poly_memory().word(pe, room.ray.span().offset_bytes), &x, sizeof(x));
     }
-    queue->enqueue(*saves, step, ray, light_place, first_slot, with_ray);
+    queue->save(*saves, step, block, room, light_place, with_ray);
   }
   QueuedRay queued(int index) { return *machine->read_mono(layout.ray_queue + std::uint64_t(index), 1); }
 
@@ -187,7 +187,7 @@ cn::LaneMask lanes(std::initializer_list<int> pes) {
 
 TEST_F(RayQueueTest, PacksRaysInTheOrderOfTheirPes) {
   enqueue(0, 0, lanes({1, 4, 7}));
-  enqueue(1, 16, lanes({0, 2}));
+  enqueue(1, 2, lanes({0, 2}));
   saves->wait_until(1);
   ASSERT_EQ(queue->rays(), 5);
   const double x[] = {1, 4, 7, 100, 102};
@@ -219,10 +219,10 @@ TEST_F(RayQueueTest, HandsOutRaysOnce) {
 TEST_F(RayQueueTest, KnowsTheLastStepThatBroughtRays) {
   enqueue(5, 0, lanes({2}));
   EXPECT_EQ(queue->last_writer(), 5u);
-  enqueue(6, 8, cn::LaneMask{});
+  enqueue(6, 1, cn::LaneMask{});
   EXPECT_EQ(queue->last_writer(), 5u) << "the later step brought none";
   EXPECT_EQ(queue->rays(), 1);
-  enqueue(7, 16, lanes({0}));
+  enqueue(7, 2, lanes({0}));
   EXPECT_EQ(queue->last_writer(), 7u);
   saves->wait_until(7);
 }

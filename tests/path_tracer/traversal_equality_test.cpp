@@ -1,5 +1,5 @@
-// Kernels that go through a tree against the one that tests every triangle: the same answer, to the last bit,
-// in every format of nodes and shape of tree, however short the stack, wherever rays go on.
+// Kernels of tree traversals against the kernel that tests every triangle: the same answer, to the last bit,
+// in every format of nodes and shape of tree, however short the stack, wherever rays continue.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using test_support::SearchScene;
 using test_support::TestRays;
 using testbench::Scene;
 
-/// Which triangles the light's own are; the scene's lights stand in the order of its triangles.
+/// Returns the triangles of each light. The scene's lights are in the order of its triangles.
 std::vector<std::vector<std::size_t>> lights_of(const Scene& scene) {
   std::vector<std::vector<std::size_t>> lights;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
@@ -31,7 +31,8 @@ std::vector<std::vector<std::size_t>> lights_of(const Scene& scene) {
   return lights;
 }
 
-/// All formats, leaves, treelets and resident pieces; stacks are tried of each.
+/// All formats, sizes of leaves and treelets, and numbers of resident nodes; each is tried with several
+/// stacks.
 std::vector<TreeShape> shapes() {
   std::vector<TreeShape> shapes;
   for (const path_tracer::NodeLayout& layout : test_support::node_layouts())
@@ -90,8 +91,8 @@ TEST_P(TraversalEquality, EveryRayHitsWhatBruteForceHits) {
   EXPECT_GT(hits, rays_in_all / 20);
 }
 
-/// A shadow ray need not say what is in its way; whether something is must be the same, and where the light
-/// was hit.
+/// A shadow ray need not tell what is in its way. Whether something is must be the same, and so must the hit
+/// on the light.
 void expect_the_same_lights_seen(const Scene& scene, RaySearch& search) {
   const std::vector<std::vector<std::size_t>> lights = lights_of(scene);
   TestRays source(scene, 29);
@@ -134,14 +135,14 @@ TEST_P(TraversalEquality, EveryShadowRaySeesTheLightThatBruteForceSees) {
 INSTANTIATE_TEST_SUITE_P(Meshes, TraversalEquality, testing::ValuesIn(test_support::search_meshes()),
                          [](const auto& suite) { return std::string(suite.param.name); });
 
-/// A ray towards an edge that two triangles of one face share hits both, and a decal may lie between the two,
-/// by rounding: it must not end the ray before the nearer one is found.
+/// A ray towards an edge that two triangles of one face share hits both. By rounding, a decal may lie between
+/// the two hits: it must not end the ray before the nearer one is found.
 TEST(TraversalOfLights, ThatShareEdgesUnderADecalAreSeenAsByBruteForce) {
   RaySearch search(cn::widest_level());
   expect_the_same_lights_seen(scene_of(test_support::decals()), search);
 }
 
-/// Rays that find nothing, from a root that leads nowhere.
+/// Rays that hit nothing, from a root that leads nowhere.
 TEST(TraversalOfNothing, HitsNothing) {
   RaySearch search(cn::widest_level());
   for (TreeShape shape : shapes()) {
@@ -158,7 +159,7 @@ TEST(TraversalOfNothing, HitsNothing) {
   }
 }
 
-/// The reason for the tree: of 2000 triangles a ray tests few.
+/// The purpose of the tree: a ray tests few of 2000 triangles.
 TEST(TraversalTurns, AreFewWhereTreeletsAndStacksAreLarge) {
   const Scene scene = scene_of(test_support::mesh(test_support::Mesh::soup));
   TestRays source(scene, 5);

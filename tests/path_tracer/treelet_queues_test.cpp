@@ -96,7 +96,7 @@ TEST_F(TreeletQueuesTest, FullBlocksAreTakenInTheOrderInWhichTheyFilled) {
   EXPECT_EQ(queues.block(queues.take_full().value()).treelet, 9);
 }
 
-/// Treelets get blocks until the rest is what all expected rays may need; the mixed queue goes on.
+/// Treelets get blocks until only as many are left as all expected rays may need; the mixed queue continues.
 TEST_F(TreeletQueuesTest, KeepBlocksBackForTheMixedQueue) {
   const int rays = kPes * config.bin_blocks;
   queues.expect(rays);
@@ -117,8 +117,8 @@ TEST_F(TreeletQueuesTest, KeepBlocksBackForTheMixedQueue) {
   }
 }
 
-/// Turns as the stage takes them, at random: no two rays share a place, none is lost, the pool never runs
-/// out.
+/// Takes turns as the stage does, at random: no two rays share a place, none is lost, the pool is never
+/// exhausted.
 TEST_F(TreeletQueuesTest, LoseNoRayWhateverRaysAskFor) {
   std::mt19937_64 random(7);
   for (int pass = 0; pass < 50; ++pass) {

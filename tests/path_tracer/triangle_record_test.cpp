@@ -53,7 +53,7 @@ class TriangleRecordTest : public test_support::StripFixture {
   double number(double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random_);
   }
-  /// Of any size between, in proportion.
+  /// Returns a size between the two, uniform in its logarithm.
   double size(double least, double most) { return std::exp(number(std::log(least), std::log(most))); }
   Vector point(double scale) { return {number(-scale, scale), number(-scale, scale), number(-scale, scale)}; }
   Vector unit() {
@@ -64,7 +64,7 @@ class TriangleRecordTest : public test_support::StripFixture {
   }
   bool one_in(unsigned count) { return random_() % count == 0; }
 
-  /// About as high as the loader lets pass: 1e-12 of the longest edge.
+  /// Returns a triangle about as flat as the loader accepts: height 1e-12 of the longest edge.
   Shape any_shape(double scale) {
     Shape shape{point(scale), point(size(1e-9, 1.0) * scale), {}};
     const Vector across = cross(unit(), shape.edge1);
@@ -76,7 +76,7 @@ class TriangleRecordTest : public test_support::StripFixture {
     }
     return shape;
   }
-  /// On the triangle, its edges and vertices, or just beside them.
+  /// Returns a point on the triangle, its edges and vertices, or just beside them.
   Vector target(const Shape& shape) {
     double u = number(0, 1);
     double v = number(0, 1);
@@ -91,7 +91,7 @@ class TriangleRecordTest : public test_support::StripFixture {
     if (one_in(2)) to = to + unit() * (size(1e-18, 1e-12) * length(to));
     return to;
   }
-  /// Towards the target from anywhere, or all but along the plane.
+  /// Returns a ray towards the target, from anywhere or nearly along the plane.
   Ray any_ray(const Shape& shape, double scale) {
     const Vector to = target(shape);
     Vector from = point(scale);
@@ -100,7 +100,7 @@ class TriangleRecordTest : public test_support::StripFixture {
       from = to + along * (scale * size(1e-3, 1.0) / length(along)) + unit() * (scale * size(1e-18, 1e-6));
     }
     for (double Vector::*component : kComponents)
-      if (one_in(8)) from.*component = to.*component;  // a direction that has nothing of it
+      if (one_in(8)) from.*component = to.*component;  // a direction without this component
     const double stretch = one_in(2) ? 1.0 : size(1e-3, 1e3);
     return {from, (to - from) * (stretch / scale)};
   }
@@ -114,7 +114,7 @@ struct Outcome {
   PerPe<char> box_met;  ///< and not behind the hit
 };
 
-/// A ray and a triangle a PE.
+/// One ray and one triangle for each PE.
 class PaddedBoxes : public TriangleRecordTest {
  protected:
   struct Case {
@@ -137,7 +137,7 @@ class PaddedBoxes : public TriangleRecordTest {
     return cases;
   }
 
-  /// Grazes the triangle or what is within reach of its padding, at about the angle from which on hits are
+  /// Returns a ray that grazes the triangle or its padding, at about the angle from which on hits are
   /// certain.
   Ray hardly_certain(const Shape& shape, double scale, double reach) {
     const double padding = path_tracer::padded_box(shape.vertex, shape.edge1, shape.edge2, reach).padding;
@@ -188,7 +188,7 @@ class PaddedBoxes : public TriangleRecordTest {
   }
 
  private:
-  /// The firmware makes the box of the record; it must come to the same.
+  /// The firmware makes the box from the record; it must be the same.
   void check_own_test(const path_tracer::RayOperands& ray, double reach,
                       const path_tracer::Crossing& crossing, const path_tracer::PolyTriangle& triangle,
                       const cn::mask& met) {
@@ -200,7 +200,7 @@ class PaddedBoxes : public TriangleRecordTest {
   }
 };
 
-/// The claim at the head of triangle_record.hpp.
+/// The claim at the top of triangle_record.hpp.
 TEST_F(PaddedBoxes, AreMetByEveryHitThatIsCertain) {
   int certain = 0;
   int uncertain = 0;
@@ -221,11 +221,11 @@ TEST_F(PaddedBoxes, AreMetByEveryHitThatIsCertain) {
   }
   EXPECT_GT(certain, 40000);
   EXPECT_GT(uncertain, 1000);
-  EXPECT_GT(uncertain_outside, 50) << "or there would be nothing to be certain of";
+  EXPECT_GT(uncertain_outside, 50) << "otherwise the test would prove nothing";
 }
 
-/// Edges and `back` may be multiplied by a power of two without a change to any bit of an answer, so a record
-/// can be made so that certainty is a comparison with the direction alone.
+/// A power of two as a factor of edges and `back` changes no bit of an answer. So a record can be scaled
+/// until certainty is a comparison with the direction alone.
 TEST_F(TriangleRecordTest, ScalesEdgesAndBackByOnePowerOfTwo) {
   for (int i = 0; i < 10000; ++i) {
     const double scale = size(1e-70, 1e70);
@@ -250,7 +250,7 @@ TEST_F(TriangleRecordTest, ScalesEdgesAndBackByOnePowerOfTwo) {
   }
 }
 
-/// What a search found, to the bit.
+/// The result of a search, to the bit.
 struct Answer {
   PerPe<std::int32_t> number;
   PerPe<double> distance;
@@ -266,7 +266,7 @@ struct Answer {
 
 class SearchOrder : public TriangleRecordTest {
  protected:
-  /// In runs of that many triangles, as leaves come.
+  /// Searches in runs of that many triangles, as leaves come.
   Answer search_runs(const std::vector<Ray>& rays, const std::vector<TriangleRecord>& triangles, double reach,
                      int run_length) {
     Answer answer{per_pe<std::int32_t>(), per_pe<double>(), per_pe<double>()};
@@ -356,7 +356,7 @@ TEST_F(SearchOrder, DoesNotMatterAtSharedEdgesAndVertices) {
   }
 }
 
-/// In one plane, one over the other, so that distances differ by rounding only.
+/// Triangles in one plane, one over the other, so that distances differ by rounding only.
 TEST_F(SearchOrder, DoesNotMatterAmongCoplanarTriangles) {
   for (int round = 0; round < 6; ++round) {
     const Vector origin = point(0.5);

@@ -37,9 +37,9 @@ Shape triangle(const Vector& a, const Vector& b, const Vector& c, int face = 0) 
   return {a, b - a, c - a, face};
 }
 
-constexpr double kReach = 1e4;  // more than any of the triangles that have no scale of their own wants
+constexpr double kReach = 1e4;  // enough for all triangles that are not scaled
 
-/// Numbered as they come.
+/// Makes records, numbered in their order.
 std::vector<TriangleRecord> records(const std::vector<Shape>& shapes, double reach = kReach) {
   std::vector<TriangleRecord> records;
   for (const Shape& shape : shapes)
@@ -53,7 +53,7 @@ struct Ray {
   Vector direction;
 };
 
-/// Where a line meets the plane of a triangle, and how far from the border of acceptance that is (relative;
+/// Where a line meets the plane of a triangle, and its margin to the border of acceptance (relative;
 /// negative: missed).
 struct Meeting {
   long double distance = 0;
@@ -181,7 +181,7 @@ TEST_F(TriangleTest, AgreesWithTheExactNearestHitAtAnyScale) {
   }
 }
 
-/// A shadow ray is as long as the way to its light: what it hits is its light unless something is nearer.
+/// A shadow ray is as long as the distance to its light: it hits its light unless something is nearer.
 TEST_F(TriangleTest, ShadowRaysHitTheLightUnlessTheExactBlockersAreNearer) {
   constexpr int kLight = 3;
   for (const double scale : {1e-8, 1.0, 1e8}) {
@@ -214,7 +214,7 @@ TEST_F(TriangleTest, ShadowRaysHitTheLightUnlessTheExactBlockersAreNearer) {
   }
 }
 
-/// The distance is in lengths of the direction.
+/// The distance is measured in lengths of the direction.
 TEST_F(TriangleTest, DirectionsNeedNotBeOfUnitLength) {
   for (const double length : {0x1p-30, 0.5, 3.0, 0x1p30}) {
     const Hits hits = nearest({{{0.25, 0.25, 2}, {0, 0, -length}}}, records({kUnit}));
@@ -259,7 +259,7 @@ TEST_F(TriangleTest, ParallelRaysMiss) {
     for (const Vector& origin :
          {Vector{-2, 0.25, 0}, {0.25, 0.25, 0}, {0, 0, 0}, {0.25, 2, 0}, {0.25, 0.25, 1}, {0, 0, -1}}) {
       EXPECT_EQ(nearest_one({origin, direction}, {kUnit}), -1);
-      // Nor do they hide what is met.
+      // They do not hide other hits either.
       const Shape wall =
           triangle({origin + direction * 4 + Vector{-9, -9, -9}}, origin + direction * 4 + Vector{9, -9, 9},
                    origin + direction * 4 + Vector{0, 9, 0}, 1);
@@ -341,7 +341,7 @@ TEST_F(TriangleTest, NothingIsInfinitelyFar) {
   EXPECT_EQ(hits.distance[0], kInfinity);
 }
 
-/// What starts a search may be what an earlier one found.
+/// A search may start from the result of an earlier one.
 TEST_F(TriangleTest, SearchesGoOnWhereOthersEnded) {
   const std::vector<TriangleRecord> triangles = records({kUnit, triangle({0, 0, 1}, {1, 0, 1}, {0, 1, 1})});
   PerPe<std::int32_t> found = per_pe<std::int32_t>();

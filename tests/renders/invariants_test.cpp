@@ -24,7 +24,7 @@
 
 namespace invariants_test {
 
-using path_tracer::Level;
+using cn::Level;
 using path_tracer::Program;
 using test_support::FilmSize;
 using test_support::render_options;

@@ -150,7 +150,7 @@ TEST_P(WaveStatistics, LoadsOfTheNextBlockAndSavesOfTheOneBeforeOverlapComputing
       continue;
     const auto is = [&](const std::string& part, std::uint64_t block) {
       return vcd.value_at("bins." + part + "_block", at) == block &&
-             vcd.value_at("bins." + part + "_bin", at) == vcd.value_at("bins.compute_bin", at);
+             vcd.value_at("bins." + part + "_stage", at) == vcd.value_at("bins.compute_stage", at);
     };
     next_loads |= vcd.value_at("pio.loading", at) == 1 && is("load", change.value + 1);
     last_saves |= vcd.value_at("pio.saving", at) == 1 && is("save", change.value - 1);
@@ -176,7 +176,7 @@ TEST_P(WaveStatistics, TransactionLogHoldsEveryRequestAndItsWaits) {
     waited += entry.at("waited_for").get<Cycles>();
     if (entry.at("request").is_null()) continue;
     EXPECT_TRUE(ids.insert(entry.at("request").get<std::uint64_t>()).second) << line;
-    EXPECT_TRUE(entry.at("bin").is_string() && entry.at("block").is_number() &&
+    EXPECT_TRUE(entry.at("stage").is_string() && entry.at("block").is_number() &&
                 entry.at("semaphore").is_string());
     queued += started - enqueued;
     served += finished - started;

@@ -69,7 +69,7 @@ struct Outcome {
 class CnRun {
  public:
   explicit CnRun(std::vector<PerPe<std::int32_t>>& variables) : memory_(variables) {
-    for (std::size_t i = 0; i < variables.size(); ++i) variables_[i].become(load(variables[i]));
+    for (std::size_t i = 0; i < variables.size(); ++i) variables_[i].assign_all_lanes(load(variables[i]));
   }
   ~CnRun() {
     for (std::size_t i = 0; i < memory_.size(); ++i) store(memory_[i], variables_[i]);

@@ -101,8 +101,7 @@ bool same(const SearchHit& a, const SearchHit& b) {
   return a.number == b.number && std::memcmp(&a.record, &b.record, sizeof(HitRecord)) == 0;
 }
 
-RaySearch::RaySearch(path_tracer::Level level)
-    : kernels_(path_tracer::kernels(level)), memory_(kPes, kPolyBytes) {}
+RaySearch::RaySearch(cn::Level level) : kernels_(path_tracer::kernels(level)), memory_(kPes, kPolyBytes) {}
 
 /// Overwrites SRAM, so that no kernel can depend on data left from earlier.
 void RaySearch::scramble(int used_bytes) {
@@ -134,7 +133,7 @@ SearchHit RaySearch::hit_of(int pe, const Offsets& at) const {
 }
 
 std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const std::vector<RayRecord>& rays,
-                                              const path_tracer::TriangleSieve* sieve) {
+                                              const path_tracer::Prefilter* prefilter) {
   const Offsets at(scene.shape);
   scramble(at.end);
   const int count = static_cast<int>(rays.size());
@@ -144,7 +143,7 @@ std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const st
   arguments.ray = PolyPointer<RayRecord>(at.ray);
   arguments.triangles = scene.triangles.data();
   arguments.triangle_count = static_cast<int>(scene.triangles.size());
-  arguments.sieve = sieve;
+  arguments.prefilter = prefilter;
   arguments.reach = scene.reach;
   arguments.surfaces = kSurfaces;
   arguments.hit = PolyPointer<HitRecord>(at.hit);

@@ -37,13 +37,13 @@ class RaySearch {
  public:
   static constexpr int kPes = 64;
 
-  explicit RaySearch(path_tracer::Level level);
+  explicit RaySearch(cn::Level level);
 
   /// @param rays at most one per PE
-  /// @param sieve sieve of the scene's triangles; nullptr for none
+  /// @param prefilter prefilter of the scene's triangles; nullptr for none
   std::vector<SearchHit> brute_force(const SearchScene& scene,
                                      const std::vector<path_tracer::RayRecord>& rays,
-                                     const path_tracer::TriangleSieve* sieve = nullptr);
+                                     const path_tracer::Prefilter* prefilter = nullptr);
 
   /// Half of the rays enter the tree after the others have begun. With `move`, every ray continues in another
   /// PE after each turn, as rays from a bin do.

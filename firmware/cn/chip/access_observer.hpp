@@ -13,7 +13,7 @@ struct Transfer;
 
 enum class Access : std::uint8_t { read, write };
 
-/// Told who touches what data, and which synchronisation lies between, in the order of the firmware.
+/// Is told who touches what data and which synchronisation lies between, in the order of the firmware.
 /// Observing costs no cycle and changes nothing. Kernels report their SRAM accesses if they are built to
 /// (kObservedSram, strip.hpp).
 class AccessObserver {
@@ -22,9 +22,9 @@ class AccessObserver {
 
   virtual void kernel_begins(const char* kernel) = 0;
   /// PEs first_pe + i, for every bit i of `enabled`, touch these bytes of their SRAM. Called from within
-  /// kernels, which must not be left by an exception: what is to stop the run is thrown by kernel_ends().
+  /// kernels, which an exception must not leave: kernel_ends() throws what is to stop the run.
   virtual void touches_poly(Access access, PolySpan bytes, int first_pe, std::uint32_t enabled) noexcept = 0;
-  /// The kernel that runs is not built to report what it touches.
+  /// The running kernel is not built to report what it touches.
   virtual void kernel_is_silent() noexcept = 0;
   virtual void kernel_ends() = 0;
 
@@ -34,7 +34,7 @@ class AccessObserver {
   virtual void transfer_starts(const Transfer& transfer) = 0;
   /// A wait on the semaphore took one of its signals.
   virtual void waited(Semaphore semaphore) = 0;
-  /// A signal that no transfer gave: the firmware's own or the host's.
+  /// A signal by the firmware itself or by the host, not by a transfer.
   virtual void signalled(Semaphore semaphore) = 0;
   /// See Machine::timed().
   virtual void timed(bool on) = 0;

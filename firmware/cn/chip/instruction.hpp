@@ -10,9 +10,9 @@
 namespace cn {
 
 /// Classes of poly instructions that differ in cost. `sram` and `sram_vector_load` count 4-byte words, the
-/// width of the path between a PE's SRAM and its registers (shared reference: 96 GB/s = 4 B a PE and cycle);
+/// width of the path between a PE's SRAM and its registers (96 GB/s for all PEs, or 4 B a PE and cycle);
 /// every other class counts instructions. A vector instruction works on four variables of a PE, one after the
-/// other and without waiting for the latency in between (poly4.hpp).
+/// other, without waiting for the latency in between (poly4.hpp).
 enum class InstructionClass : std::uint8_t {
   fp64_add,
   fp64_mul,
@@ -42,11 +42,11 @@ enum class InstructionClass : std::uint8_t {
   convert,  // between number formats
   enable,   // push, invert or pop of the enable stack
   sram,
-  sram_vector_load,  // goes on beside vector arithmetic
+  sram_vector_load,  // overlaps vector arithmetic
   swazzle,           // one step along the PE-to-PE path
-  swazzle_vector4,   // the same, four variables behind each other
+  swazzle_vector4,   // the same for four variables in sequence
   reduce,            // one test of all PEs by the control unit (any, all, count)
-  mono,              // an instruction of the control unit's own; overlaps poly work through the issue queue
+  mono,              // an instruction of the control unit itself; overlaps poly work through the issue queue
 };
 
 inline constexpr std::size_t kInstructionClasses = static_cast<std::size_t>(InstructionClass::mono) + 1;
@@ -100,15 +100,15 @@ struct IssueCounts {
   bool operator==(const IssueCounts& other) const { return by_class == other.by_class; }
 };
 
-/// What a kernel issued, shared by all PEs. Cost is data-independent except where a region runs "while any PE
-/// wants it": a kernel is executed strip by strip (strip.hpp), so each data-dependent region and each of its
-/// iterations is a node that the first strip to reach it fills in; later strips issue the same instructions
-/// there and add only their enabled lanes. The sum over all nodes is what a chip that runs all PEs in lock
-/// step issues.
+/// Instructions that a kernel issued, shared by all PEs. Cost is data-independent except where a region runs
+/// as long as any PE needs it. A kernel is executed strip by strip (strip.hpp). So each data-dependent
+/// region, and each of its iterations, is a node that the first strip to reach it fills in. Later strips
+/// issue the same instructions there and add only their enabled lanes. The sum over all nodes is what a chip
+/// that runs all PEs in lock step issues.
 class IssueTree {
  public:
   struct Node;
-  using Region = std::vector<Node*>;  // one node an iteration
+  using Region = std::vector<Node*>;  // one node for each iteration
 
   struct Node {
     IssueCounts counts;
@@ -116,7 +116,7 @@ class IssueTree {
     std::uint64_t enabled_lanes = 0;
     std::vector<Region> regions;  // in the order in which the node's code enters them
 
-    /// As new, but for the memory that it holds.
+    /// Resets the node; keeps the memory it holds.
     void clear() {
       counts = IssueCounts{};
       reached = false;
@@ -132,8 +132,8 @@ class IssueTree {
   Node& root() { return root_; }
   const Node& root() const { return root_; }
 
-  /// The node for an iteration of a region of `parent`; iterations come one after the other. Stays where it
-  /// is until clear().
+  /// Returns the node for an iteration of a region of `parent`. Iterations come one after the other. The node
+  /// keeps its address until clear().
   Node& node(Node& parent, std::size_t region, std::size_t iteration) {
     if (parent.regions.size() <= region) parent.regions.resize(region + 1);
     Region& iterations = parent.regions[region];
@@ -141,8 +141,8 @@ class IssueTree {
     return *iterations[iteration];
   }
 
-  /// Ready for the next kernel. Nodes are kept and used again: a kernel has dozens, and there are many
-  /// kernels.
+  /// Makes the tree ready for the next kernel. Nodes are kept and used again, because a kernel has dozens and
+  /// there are many kernels.
   void clear() {
     root_.clear();
     used_ = 0;
@@ -176,7 +176,7 @@ class IssueTree {
   }
 
   Node root_;
-  std::deque<Node> pool_;  ///< whose nodes stay where they are
+  std::deque<Node> pool_;  ///< a deque, so that nodes keep their addresses
   std::size_t used_ = 0;
 };
 

@@ -2,10 +2,11 @@
 
 namespace cn {
 
-/// What kernels and requests belong to, as the firmware says for those who observe a run: one block of one of
-/// its bins. It costs no cycle and changes nothing. `bin` is a string literal, null for what belongs to none.
+/// The stage and block that kernels and requests belong to, as the firmware says for observers of a run. A
+/// label costs no cycle and changes nothing. `stage` is a string literal, or null for what belongs to no
+/// stage.
 struct Label {
-  const char* bin = nullptr;
+  const char* stage = nullptr;
   int block = -1;
 };
 

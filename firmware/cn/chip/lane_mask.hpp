@@ -9,7 +9,7 @@ namespace cn {
 
 inline constexpr int kMaxPes = 1024;
 
-/// One enable bit a PE of the whole array, kept by the strip: bit i of byte s is PE s * kStripLanes + i.
+/// One enable bit for each PE of the array, by strips: bit i of byte s is PE s * kStripLanes + i.
 class LaneMask {
  public:
   LaneMask() = default;

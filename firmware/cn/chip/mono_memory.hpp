@@ -18,14 +18,14 @@ struct MonoPointer {
   MonoPointer operator+(std::uint64_t index) const { return {address + index * sizeof(T)}; }
 };
 
-/// Where each PE's piece of a transfer lies in mono memory. Every PE supplies its own address; an array that
-/// is laid out by PE number is described by its start instead of by num_pes addresses.
+/// Where each PE's piece of a transfer lies in mono memory. Every PE supplies its own address. An array that
+/// is ordered by PE number needs its start and stride only, instead of num_pes addresses.
 struct MonoPlaces {
   MonoAddress first = 0;
   std::uint64_t stride_bytes = 0;
   const MonoAddress* by_pe =
-      nullptr;  ///< when set, addresses relative to `first`, a strip's side by side; no stride then
-  std::size_t to_next_strip = kStripLanes;  ///< addresses, from one strip's to the next's
+      nullptr;  ///< if set: addresses relative to `first`, a strip's side by side; then there is no stride
+  std::size_t to_next_strip = kStripLanes;  ///< stride between strips, in addresses
 
   static MonoPlaces array(MonoAddress first, std::uint64_t stride_bytes) { return {first, stride_bytes}; }
   static MonoPlaces each(const MonoAddress* by_pe, std::uint64_t offset_bytes = 0,
@@ -33,7 +33,7 @@ struct MonoPlaces {
     return {offset_bytes, 0, by_pe, to_next_strip};
   }
 
-  /// With `by_pe`: the addresses of the strip that PE `first_pe` begins.
+  /// The addresses of the strip that PE `first_pe` begins; with `by_pe` only.
   const MonoAddress* strip(int first_pe) const {
     return by_pe + std::size_t(first_pe / kStripLanes) * to_next_strip;
   }

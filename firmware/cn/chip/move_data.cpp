@@ -17,7 +17,8 @@ namespace {
 
 constexpr unsigned kAllLanes = (1u << kStripLanes) - 1;
 
-/// `if_set` or `otherwise`, by arithmetic: of ?: GCC makes branches here, which nobody can predict.
+/// Returns `if_set` or `otherwise` by arithmetic: GCC would turn ?: into branches, which the processor could
+/// not predict here.
 template <class T>
 T* chosen(unsigned lanes, int lane, T* if_set, T* otherwise) {
   const auto bits = reinterpret_cast<std::uintptr_t>(otherwise);
@@ -25,7 +26,7 @@ T* chosen(unsigned lanes, int lane, T* if_set, T* otherwise) {
   return reinterpret_cast<T*>(bits ^ ((bits ^ reinterpret_cast<std::uintptr_t>(if_set)) & mask));
 }
 
-/// Where a strip's pieces lie: side by side in an array.
+/// Places of a strip's pieces that lie side by side in an array.
 class PlacesInArray {
  public:
   static constexpr bool kAnywhere = false;
@@ -39,8 +40,8 @@ class PlacesInArray {
   std::uint64_t stride_bytes_;
 };
 
-/// Or wherever each PE says. Disabled PEs may hold any address; an enabled one's takes its place, so that all
-/// are valid.
+/// Places that each PE gives. Disabled PEs may hold any address; they get an enabled one's instead, so that
+/// all addresses are valid.
 class PlacesOfEach {
  public:
   static constexpr bool kAnywhere = true;
@@ -58,14 +59,14 @@ class PlacesOfEach {
   std::uint8_t* place_[kStripLanes];
 };
 
-/// The same, but for PEs that save nothing a place where nothing matters: to store there is cheaper than to
-/// ask a question whose answer nobody can predict.
-class PlacesOrNowhere {
+/// The places of `Places`, but disabled PEs store to a scratch place. An unconditional store is cheaper than
+/// a branch that the processor cannot predict.
+class PlacesOrScratch {
  public:
   template <class Places>
-  PlacesOrNowhere(const Places& places, unsigned enabled, std::uint8_t* nowhere) {
+  PlacesOrScratch(const Places& places, unsigned enabled, std::uint8_t* scratch) {
     for (int lane = 0; lane < kStripLanes; ++lane)
-      place_[lane] = chosen(enabled, lane, places[lane], nowhere);
+      place_[lane] = chosen(enabled, lane, places[lane], scratch);
   }
   std::uint8_t* operator[](int lane) const { return place_[lane]; }
 
@@ -82,13 +83,13 @@ struct StripTransfer {
   unsigned enabled;
 };
 
-// Mono memory holds a PE's words side by side, poly memory a word of a strip's PEs, so a transfer transposes:
-// in registers, kBlockWords words of each PE at a time. The last block's `count` is a template argument
-// because most records are shorter than two blocks.
+// Mono memory holds a PE's words side by side, poly memory one word of all PEs of a strip. So a transfer
+// transposes, in registers, kBlockWords words of each PE at a time. The last block's `count` is a template
+// argument because most records are shorter than two blocks.
 #if defined(__AVX512F__)
 
 constexpr int kBlockWords = 8;
-// By GCC's own shuffles: the headers' intrinsics of AVX-512 trip its warning of uninitialised values.
+// GCC's own shuffles, because the headers' intrinsics of AVX-512 trip its warning of uninitialised values.
 using Words __attribute__((vector_size(64))) = long long;
 using Block = Words[8];
 
@@ -181,7 +182,7 @@ Words* as_vector(void* address) {
   return static_cast<Words*>(address);
 }
 
-/// All ones in the lanes whose bits are set.
+/// Returns all ones in the lanes whose bits are set.
 Words lanes_of_bits(unsigned bits) {
   const Words lane_bit = _mm256_set_epi64x(8, 4, 2, 1);
   return _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(bits), lane_bit), lane_bit);
@@ -213,7 +214,7 @@ template <int count, bool all, class Strip>
   }
 }
 
-/// A masked store would do for all, but AMD's take some 20 cycles.
+/// Plain stores, because a masked one takes some 20 cycles on AMD's processors.
 template <int count>
 [[gnu::always_inline]] inline void store_words(std::uint8_t* to, const Words& words) {
   if constexpr (count == 4) {
@@ -271,7 +272,7 @@ template <Direction direction, int count, bool all, class Strip>
   }
 }
 
-/// @tparam tail words beyond whole blocks
+/// @tparam tail number of words behind the last whole block
 template <Direction direction, int tail, bool all, class Strip>
 [[gnu::always_inline]] inline void move_strip(const Strip& strip) {
   const int in_blocks = strip.words - tail;
@@ -303,8 +304,8 @@ void save_in_pe_order(const Strip& strip) {
                     8);
 }
 
-/// Records of rays lie all over mono memory; what the next strip loads is on its way while this one's is
-/// moved.
+/// Prefetches what the next strip loads while this one's data are moved, because records of rays are
+/// scattered over mono memory.
 [[gnu::always_inline]] inline void prefetch_strip(const Transfer& transfer, int first_pe,
                                                   std::uint8_t* mono) {
   constexpr int kLineBytes = 64;
@@ -318,8 +319,8 @@ void save_in_pe_order(const Strip& strip) {
   }
 }
 
-/// Of the largest record for which there is such a place.
-constexpr int kNowhereBytes = 512;
+/// Size of the scratch place. Larger records are saved lane by lane.
+constexpr int kScratchBytes = 512;
 
 template <Direction direction, int tail, class Places>
 void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
@@ -339,10 +340,10 @@ void move_strips(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono)
       save_in_pe_order(strip);
     } else if (enabled == kAllLanes) {
       move_strip<direction, tail, true>(strip);
-    } else if (!loads && transfer.poly.size_bytes <= kNowhereBytes) {
-      std::uint8_t nowhere[kNowhereBytes];
+    } else if (!loads && transfer.poly.size_bytes <= kScratchBytes) {
+      std::uint8_t scratch[kScratchBytes];
       move_strip<direction, tail, true>(
-          StripTransfer<PlacesOrNowhere>{{strip.place, enabled, nowhere}, strip.row, strip.words, enabled});
+          StripTransfer<PlacesOrScratch>{{strip.place, enabled, scratch}, strip.row, strip.words, enabled});
     } else {
       move_strip<direction, tail, false>(strip);
     }

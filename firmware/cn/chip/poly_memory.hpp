@@ -17,7 +17,7 @@ struct PolySpan {
   int size_bytes = 0;
 };
 
-/// Thrown when named buffers do not fit a PE's SRAM; the message is one line, the map says who holds what.
+/// Thrown when named buffers do not fit a PE's SRAM. The message is one line; the map lists the buffers.
 class PolyMemoryOverflow : public std::runtime_error {
  public:
   PolyMemoryOverflow(const std::string& message, std::string map)
@@ -28,10 +28,10 @@ class PolyMemoryOverflow : public std::runtime_error {
   std::string map_;
 };
 
-/// The SRAM of all PEs. A strip's PEs lie side by side, word after word, so that a kernel reads one variable
-/// of all of them as a vector, and a record as lines of the host's cache that follow each other, at offsets
-/// that do not depend on the number of PEs. Buffers have names and are only ever freed all at once, as static
-/// storage of a program.
+/// The SRAM of all PEs. A strip's PEs lie side by side, word after word. So a kernel reads one variable of
+/// all of them as a vector, and a record as consecutive cache lines of the simulator, at offsets that do not
+/// depend on the number of PEs. Buffers have names and are only ever freed all at once, as static storage of
+/// a program.
 class PolyMemory {
  public:
   struct Buffer {
@@ -55,15 +55,15 @@ class PolyMemory {
   const std::vector<Buffer>& buffers() const { return buffers_; }
   std::string map() const;
 
-  /// Told of every access from now on; may be null.
+  /// Sets who is told of every access from now on; may be null.
   void set_observer(AccessObserver* observer) { observer_ = observer; }
   AccessObserver* observer() const { return observer_; }
 
-  /// All of it, strip after strip.
+  /// The whole memory, strip after strip.
   std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(lines_.data()); }
   const std::uint64_t* words() const { return reinterpret_cast<const std::uint64_t*>(lines_.data()); }
 
-  /// Words from one strip to the next.
+  /// Stride between strips, in words.
   std::size_t strip_words() const { return lines_a_strip_ * kStripLanes; }
   /// The strip's words at an address: word w of lane i is at [w * kStripLanes + i].
   /// @param offset_bytes a multiple of 8
@@ -86,7 +86,7 @@ class PolyMemory {
   int num_pes_;
   int capacity_bytes_;
   std::vector<Buffer> buffers_;
-  /// One word of a strip's PEs, on its own cache line: a vector that straddles two costs twice.
+  /// One word of a strip's PEs on its own cache line, because a vector that straddles two lines costs twice.
   struct alignas(64) Line {
     std::uint64_t word[kStripLanes];
   };

@@ -9,7 +9,7 @@
 
 namespace cn {
 
-/// A hardware semaphore: a counter that PIO, threads and the host signal and wait on.
+/// A hardware semaphore: a counter that PIO transfers, threads and the host signal and wait on.
 struct Semaphore {
   int index = -1;
 };
@@ -27,7 +27,7 @@ struct Transfer {
   Label label{};
 };
 
-/// The first enabled PE whose place is not `allowed(place)`, or -1.
+/// Returns the first enabled PE whose place is not `allowed(place)`, or -1.
 template <class Allowed>
 int first_pe_not(const Transfer& transfer, int num_pes, Allowed&& allowed) {
   for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {

@@ -34,12 +34,12 @@ inline Chunk repeat(std::uint64_t low, std::uint64_t high) {
 
 }  // namespace bits_detail
 
-/// The 32 bits in opposite order. A PE exchanges neighbours, pairs, nibbles and bytes by masks and shifts,
-/// five operations each, and names its two 16-bit words the other way round.
+/// Reverses the order of the 32 bits. A PE exchanges neighbours, pairs, nibbles and bytes by masks and
+/// shifts, five operations each, and names its two 16-bit words in the other order.
 inline poly<std::uint32_t> reverse_bits(const poly<std::uint32_t>& a) {
   using namespace bits_detail;
   issue(InstructionClass::int32_alu, 20);
-  // The host looks nibbles up.
+  // The simulator looks nibbles up.
   const Chunk reversed = repeat(0x0e060a020c040800u, 0x0f070b030d050901u);
   const Chunk reversed_high = reversed << 4;
   const Chunk opposite_bytes = repeat(0x8080808000010203u, 0x8080808008090a0bu);

@@ -4,7 +4,7 @@
 
 namespace cn {
 
-/// Pushes a condition onto the enable stack for as long as it lives.
+/// Pushes a condition onto the enable stack; its destructor pops it.
 class EnableScope {
  public:
   explicit EnableScope(const mask& condition) : outer_(strip.enabled) {
@@ -30,8 +30,8 @@ class EnableScope {
   MaskLanes outer_;
 };
 
-/// Cn's if on a poly condition. The control unit never jumps over a branch on its own: both are issued, PEs
-/// that are not concerned are disabled.
+/// Cn's if on a poly condition. The control unit never skips a branch on its own: both are issued, with the
+/// PEs disabled whose condition chooses the other.
 template <class Then>
 inline void poly_if(const mask& condition, Then&& then) {
   EnableScope scope(condition);
@@ -50,8 +50,8 @@ inline bool any_enabled() {
   return mask_bits(strip.enabled) != 0;
 }
 
-/// What a Cn programmer writes as `if (any(condition)) { poly if (condition) ... }`: pays for a reduction
-/// over all PEs, and the body is not issued when no PE wants it.
+/// What a Cn programmer writes as `if (any(condition)) { poly if (condition) ... }`. It costs a reduction
+/// over all PEs; the body is not issued when the condition holds on no PE.
 template <class Body>
 inline void poly_if_any(const mask& condition, Body&& body) {
   issue(InstructionClass::reduce);
@@ -60,13 +60,13 @@ inline void poly_if_any(const mask& condition, Body&& body) {
   if (any_enabled()) run_node(region, 0, body);
 }
 
-/// Cn's while on a poly condition: runs as long as it holds on any PE; a PE that fails it is off for the rest
-/// of the loop. `condition` is evaluated before each pass and once more to leave.
+/// Cn's while on a poly condition: runs as long as the condition holds on any PE. A PE that fails it is
+/// disabled for the rest of the loop. `condition` is evaluated before each pass and once more to leave.
 template <class Condition, class Body>
 inline void poly_while(Condition&& condition, Body&& body) {
   const std::size_t region = strip.next_region++;
   EnableScope scope{mask(strip.enabled)};
-  bool again = true;  // even without an enabled PE: the control unit knows only after it has asked
+  bool again = true;  // even without an enabled PE, because the control unit must ask first
   for (std::size_t iteration = 0; again; ++iteration) {
     run_node(region, iteration, [&] {
       issue(InstructionClass::reduce);

@@ -2,7 +2,7 @@
 
 #include "firmware/cn/language/math.hpp"
 
-/// What rounding left out, and powers of two.
+/// Exact rounding errors, and powers of two.
 namespace cn {
 
 namespace exact_detail {
@@ -12,7 +12,8 @@ struct Halves {
   poly<double> low;
 };
 
-/// 26 bits each (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971).
+/// Splits into two halves of 26 bits (Dekker, "A Floating-Point Technique for Extending the Available
+/// Precision", 1971).
 inline Halves split(const poly<double>& a) {
   const poly<double> c = a * 134217729.0;  // 2^27 + 1
   const poly<double> high = c - (c - a);
@@ -21,27 +22,27 @@ inline Halves split(const poly<double>& a) {
 
 }  // namespace exact_detail
 
-/// a * b - product exactly, where `product` is a * b rounded and nothing over- or underflows.
+/// Returns a * b - product exactly. `product` is a * b rounded; nothing may overflow or underflow.
 inline poly<double> product_error(const poly<double>& a, const poly<double>& b, const poly<double>& product) {
   const exact_detail::Halves p = exact_detail::split(a);
   const exact_detail::Halves q = exact_detail::split(b);
   return (p.high * q.high - product) + p.high * q.low + p.low * q.high + p.low * q.low;
 }
 
-/// Of a positive number, by its exponent.
+/// Returns the power of two nearest to a positive number, by its exponent.
 inline poly<double> nearest_power_of_two(const poly<double>& a) {
   constexpr std::uint64_t kExponent = 0x7ff0000000000000u;
   const poly<std::uint64_t> bits = reinterpret<std::uint64_t>(a * 1.4142135623730951);
   return reinterpret<double>(bits & poly<std::uint64_t>(kExponent));
 }
 
-/// 1 / a exactly, of a power of two.
+/// Returns 1 / a exactly; `a` is a power of two.
 inline poly<double> inverse_power_of_two(const poly<double>& a) {
   constexpr std::uint64_t kTwiceBias = 2046;
   return reinterpret<double>((kTwiceBias << 52) - reinterpret<std::uint64_t>(a));
 }
 
-/// The upper and lower 32 bits: naming half of a register costs nothing.
+/// Returns the upper or lower 32 bits. Naming half of a register costs nothing.
 template <class T>
 inline poly<std::uint32_t> high_word(const poly<T>& a) {
   const auto bits = bit_cast_lanes<std::uint64_t>(a.lanes());

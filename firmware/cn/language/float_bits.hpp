@@ -2,10 +2,10 @@
 
 #include "firmware/cn/language/poly.hpp"
 
-/// Floats as what they are made of: halves of the words of SRAM, and integers that keep their order.
+/// Floats by their bits: as halves of the words of SRAM, and as integers of the same order.
 namespace cn {
 
-/// The float in one half of a word: naming half of a register costs nothing.
+/// Reads the float in one half of a word. Naming half of a register costs nothing.
 inline poly<float> low_float(const poly<std::uint64_t>& word) {
   return poly<float>(halves_of_words<WordHalf::low>(word.lanes()));
 }
@@ -16,14 +16,14 @@ inline poly<std::uint64_t> join_floats(const poly<float>& low, const poly<float>
   return poly<std::uint64_t>(words_of_halves(low.lanes(), high.lanes()));
 }
 
-/// The word with a float above an integer.
+/// Joins a float, as the upper half, and an integer to a word.
 inline poly<std::uint64_t> join_words(const poly<float>& high, const poly<std::uint32_t>& low) {
   const Lanes<std::uint64_t> words = words_of_halves(broadcast(0.0f), high.lanes());
   return poly<std::uint64_t>(
       each_chunk<std::uint64_t>([&](int i) { return words.chunk[i] | low.lanes().chunk[i]; }));
 }
 
-/// A float by its bits.
+/// Reads bits as a float.
 inline poly<float> float_of_bits(const poly<std::uint32_t>& bits) {
   return poly<float>(halves_of_words<WordHalf::low>(bits.lanes()));
 }
@@ -71,7 +71,7 @@ inline poly<std::uint64_t> words(OfChunk&& of_chunk) {
 
 }  // namespace float_bits_detail
 
-/// One of the four bytes that the bits of a float are, the lowest first, as a number.
+/// Converts one of the four bytes of a float's bits, the lowest first, to a number.
 template <int byte>
 inline poly<float> byte_of(const poly<float>& bytes) {
   static_assert(byte >= 0 && byte < 4);
@@ -89,9 +89,9 @@ inline poly<float> byte_of(const poly<float>& bytes) {
   }));
 }
 
-/// Comparisons by the bits as signed integers, which the ALU does in half of the adder's time. Numbers that
-/// are not negative compare as they do as floats, and above all with a sign, whose order is the other way
-/// round: -0 is the least.
+/// Comparisons of the bits as signed integers, which the ALU does in half of the adder's time. Floats without
+/// a sign bit compare in their own order. Floats with a sign bit are less than those, in reverse order; -0 is
+/// the least.
 inline poly<float> min_by_bits(const poly<float>& a, const poly<float>& b) {
   return float_bits_detail::choose([&](int i) {
 #if defined(__AVX2__)
@@ -116,16 +116,16 @@ inline mask at_most_by_bits(const poly<float>& a, const poly<float>& b) {
                                                         float_bits_detail::integers(b.lanes())));
 }
 
-/// Exchanges words where the second is the smaller. Each is that of a finite double that is not negative, in
-/// whose format the host compares them.
+/// Exchanges words where the second is the smaller. Each word must be that of a finite double that is not
+/// negative; the simulator compares them as doubles.
 inline void put_in_order(poly<std::uint64_t>& first, poly<std::uint64_t>& second) {
   issue(InstructionClass::int64_alu);
   issue(InstructionClass::move, 2);
   const auto a = bit_cast_lanes<double>(first.lanes());
   const auto b = bit_cast_lanes<double>(second.lanes());
-  first.become(
+  first.assign_all_lanes(
       float_bits_detail::words([&](int i) { return float_bits_detail::lesser(a.chunk[i], b.chunk[i]); }));
-  second.become(
+  second.assign_all_lanes(
       float_bits_detail::words([&](int i) { return float_bits_detail::greater(a.chunk[i], b.chunk[i]); }));
 }
 

@@ -3,9 +3,9 @@
 #include "firmware/cn/chip/poly_memory.hpp"
 #include "firmware/cn/language/poly.hpp"
 
-/// Poly memory through poly pointers: each PE reads or writes at an address of its own in its own SRAM. It
-/// costs what an access at the same address in all PEs costs; computing addresses is charged as it is
-/// written.
+/// Poly memory through poly pointers: each PE reads or writes at an address of its own in its own SRAM. An
+/// access costs what an access at the same address in all PEs costs. Computing addresses is charged where it
+/// is written.
 namespace cn {
 
 namespace indexed_detail {
@@ -14,7 +14,7 @@ inline Lanes<std::uint64_t> lane_numbers() {
   return each_lane<std::uint64_t>([](int i) { return std::uint64_t(i); });
 }
 
-/// Where the words of the enabled PEs lie in Strip::words; 0 for the others, whose addresses may be anything.
+/// The index in Strip::words of each enabled PE's word; 0 for the others, whose addresses may be anything.
 inline Lanes<std::uint64_t> word_index(const poly<std::int32_t>& address) {
   const auto bytes = bit_cast_lanes<std::uint64_t>(address.lanes());
   const auto lane = lane_numbers();
@@ -24,7 +24,8 @@ inline Lanes<std::uint64_t> word_index(const poly<std::int32_t>& address) {
   return select_lanes(MaskLanes(strip.enabled), index, broadcast(std::uint64_t{0}));
 }
 
-/// Each lane's own words, by scalar loads: a gather instruction takes several times as many operations.
+/// Gathers each lane's own words by scalar loads, because a gather instruction takes several times as many
+/// operations.
 template <std::size_t... lane>
 inline Lanes<std::uint64_t>::Chunk gather_chunk(const std::uint64_t* const* pointer, std::size_t offset,
                                                 std::index_sequence<lane...>) {
@@ -45,7 +46,7 @@ struct LanePointers {
   }
 };
 
-/// Bits by which a 4-byte variable stands in its 8-byte word.
+/// The shift, in bits, of a 4-byte variable in its 8-byte word.
 inline Lanes<std::uint64_t> shift_in_word(const poly<std::int32_t>& address) {
   const auto bytes = bit_cast_lanes<std::uint64_t>(address.lanes());
   return each_chunk<std::uint64_t>([&](int i) { return (bytes.chunk[i] & 4) << 3; });
@@ -64,8 +65,8 @@ inline void observe(Access access, const poly<std::int32_t>& address, int bytes)
 
 }  // namespace indexed_detail
 
-/// @param address in bytes, a multiple of sizeof(T) within the SRAM on every enabled PE; the others get some
-/// number
+/// @param address in bytes, a multiple of sizeof(T) within the SRAM on every enabled PE; disabled PEs get an
+/// arbitrary value
 template <class T>
 inline poly<T> load_at(const poly<std::int32_t>& address) {
   static_assert(sizeof(T) == 8 || (sizeof(T) == 4 && std::is_integral_v<T>));
@@ -83,7 +84,7 @@ inline poly<T> load_at(const poly<std::int32_t>& address) {
   }
 }
 
-/// Reaches enabled PEs only; see load_at.
+/// Writes in enabled PEs only; for `address` see load_at.
 inline void store_at(const poly<std::int32_t>& address, const poly<std::uint64_t>& value) {
   issue(InstructionClass::sram, 2);
   indexed_detail::observe(Access::write, address, 8);
@@ -94,14 +95,14 @@ inline void store_at(const poly<std::int32_t>& address, const poly<std::uint64_t
   }
 }
 
-/// A record that each PE has at an address of its own.
+/// A record at an address of its own in each PE.
 class IndexedRecord {
  public:
   /// @param address see load_at; a multiple of 8
   explicit IndexedRecord(const poly<std::int32_t>& address)
       : address_(address), pointers_(indexed_detail::word_index(address)) {}
 
-  /// The 8 bytes at an offset that is the same for all PEs, a multiple of 8.
+  /// Loads the 8 bytes at an offset that is the same for all PEs, a multiple of 8.
   template <class T>
   poly<T> load(int offset_bytes) const {
     static_assert(sizeof(T) == 8);
@@ -111,8 +112,8 @@ class IndexedRecord {
         pointers_.gather(std::size_t(unsigned(offset_bytes) / 8) * kStripLanes)));
   }
 
-  /// Of two variables that were loaded the one that each PE's condition chooses: on the chip the condition
-  /// makes part of the address, so that each is read where it is wanted and no instruction chooses.
+  /// Returns for each PE the one of two loaded variables that its condition chooses. On the chip the
+  /// condition is part of the address, so that the PE reads the right one at once and no instruction chooses.
   template <class T>
   static poly<T> chosen(const mask& condition, const poly<T>& if_set, const poly<T>& otherwise) {
     return poly<T>(select_lanes(condition.lanes(), if_set.lanes(), otherwise.lanes()));
@@ -122,7 +123,7 @@ class IndexedRecord {
   void observe(int offset_bytes, int bytes) const {
     if constexpr (kObservedSram) {
       poly<std::int32_t> at(address_);
-      at.become(poly<std::int32_t>(each_chunk<std::int64_t>(
+      at.assign_all_lanes(poly<std::int32_t>(each_chunk<std::int64_t>(
           [&](int i) { return address_.lanes().chunk[i] + std::int64_t{offset_bytes}; })));
       indexed_detail::observe(Access::read, at, bytes);
     }
@@ -132,7 +133,7 @@ class IndexedRecord {
   indexed_detail::LanePointers pointers_;
 };
 
-/// Shifts by an amount of each PE's own, 0 to 63. The ALU shifts by one fixed amount a pass, so that is a
+/// Shifts by each PE's own amount, 0 to 63. The ALU shifts by one fixed amount a pass, so this takes a
 /// conditional pass for each bit of the amount.
 inline void issue_variable_shift() {
   issue(InstructionClass::int64_alu, 6);
@@ -151,10 +152,10 @@ inline poly<std::uint64_t> shift_right(const poly<std::uint64_t>& a, const poly<
       each_chunk<std::uint64_t>([&](int i) { return a.lanes().chunk[i] >> (amount.chunk[i] & 63); }));
 }
 
-/// The number of the highest bit that is set in a positive number: its exponent as a double.
+/// Returns the number of the highest bit that is set in a positive number: its exponent as a double.
 inline poly<std::int32_t> highest_bit(const poly<std::uint32_t>& a) {
   const poly<std::uint64_t> bits = reinterpret<std::uint64_t>(convert<double>(a));
-  issue(InstructionClass::int32_alu, 2);  // of the upper word
+  issue(InstructionClass::int32_alu, 2);  // on the upper word
   return poly<std::int32_t>(bit_cast_lanes<std::int64_t>(
       each_chunk<std::uint64_t>([&](int i) { return (bits.lanes().chunk[i] >> 52) - 1023; })));
 }

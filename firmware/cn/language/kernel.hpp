@@ -6,9 +6,9 @@
 
 namespace cn {
 
-/// A poly program between two points at which the control unit does something else: a name for statistics and
-/// waves, and the entry point of the x86-64 level in use. `run` executes it for all PEs that `enabled` names,
-/// leaves what was issued in `issued`, and runs nothing when no PE is enabled.
+/// A poly program: a name for statistics and waves, and the entry point for the x86-64 level in use. The
+/// control unit does nothing else while it runs. `run` executes it for all PEs of `enabled`, leaves what was
+/// issued in `issued`, and does nothing when no PE is enabled.
 template <class Arguments>
 struct Kernel {
   const char* name = nullptr;
@@ -16,11 +16,11 @@ struct Kernel {
               IssueTree& issued) = nullptr;
 };
 
-/// Runs `program(arguments)` strip by strip. Strips without an enabled PE are skipped by the host; the chip's
-/// cost is that of the instructions issued, which the other strips give.
+/// Runs `program(arguments)` strip by strip. The simulator skips strips without an enabled PE; the other
+/// strips give the instructions issued, which are the chip's cost.
 ///
-/// Flattened: a kernel is straight-line vector code; one operator left as a call keeps its operands out of
-/// registers and costs a factor of three.
+/// Flattened, because a kernel is straight-line vector code: one operator left as a call keeps its operands
+/// out of registers and costs a factor of three.
 template <class Arguments, void (*program)(const Arguments&)>
 [[gnu::flatten]] void run_strips(const Arguments& arguments, PolyMemory& memory, const LaneMask& enabled,
                                  IssueTree& issued) {
@@ -45,15 +45,14 @@ template <class Arguments, void (*program)(const Arguments&)>
   }
 }
 
-/// The kernel that runs `program`, for a table of entry points.
+/// Returns the kernel that runs `program`, for a table of entry points.
 template <class Arguments, void (*program)(const Arguments&)>
 constexpr Kernel<Arguments> kernel(const char* name) {
   return {name, &run_strips<Arguments, program>};
 }
 
-/// Keeps one condition a PE beyond the kernel, for the control unit to count or to enable PEs of a transfer
-/// by. PEs that are not enabled read as false. `kept` must hold no bits of PEs that the kernel did not run
-/// for.
+/// Keeps one condition for each PE beyond the kernel, for the control unit to count or to enable PEs of a
+/// transfer. Disabled PEs read as false. `kept` must hold no bits of PEs that the kernel did not run for.
 inline void keep(const mask& condition, LaneMask& kept) {
   issue(InstructionClass::sram);
   kept.set_strip_bits(strip.first_pe / kStripLanes, mask_bits(condition.lanes()) & mask_bits(strip.enabled));

@@ -8,7 +8,7 @@ namespace {
 using Chunk = Lanes<double>::Chunk;
 
 // SLEEF's "cinz" functions are bit-reproducible: the same result on every vector extension, without fused
-// multiply-add. One set of names a native width.
+// multiply-add. Each native width has its own set of names.
 #if defined(__AVX512F__)
 auto sincos_chunk(Chunk a) {
   return Sleef_cinz_sincosd8_u10avx512fnofma(a);

@@ -32,7 +32,7 @@ inline poly<double> abs(const poly<double>& a) {
       bit_cast_lanes<double>(each_chunk<std::uint64_t>([&](int i) { return bits.chunk[i] & kAllButSign; })));
 }
 
-/// `a` with its sign changed where `by` is negative.
+/// Returns `a` with its sign changed where `by` is negative.
 inline poly<double> flip_sign(const poly<double>& a, const poly<double>& by) {
   issue(InstructionClass::int16_alu, 2);
   const auto bits = bit_cast_lanes<std::uint64_t>(a.lanes());
@@ -47,11 +47,11 @@ struct SineCosine {
   poly<double> cosine;
 };
 
-/// Both at once, from SLEEF's bit-reproducible functions without fused multiply-add: the same bits from every
-/// x86-64 level, error below 1 ulp.
+/// Computes both at once by SLEEF's bit-reproducible functions without fused multiply-add: the same bits at
+/// every x86-64 level, with an error below 1 ulp.
 SineCosine sincos(const poly<double>& radians);
 
-/// Angle of the point (x, y) from the positive x axis, in (-pi, pi].
+/// Returns the angle of the point (x, y) from the positive x axis, in (-pi, pi].
 poly<double> atan2(const poly<double>& y, const poly<double>& x);
 
 poly<double> exp(const poly<double>& a);

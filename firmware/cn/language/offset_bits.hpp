@@ -8,9 +8,9 @@
 
 namespace cn {
 
-/// Every bit that is set in an offset from `places.first`, of any PE. At least as large as each, and a
-/// multiple of 2^k only if each is: checks that pass on it need not look at PEs one by one.
-/// @param places with `by_pe`
+/// Returns the union of the bits set in the PEs' offsets from `places.first`. It is at least as large as each
+/// offset, and a multiple of 2^k only if each is. If a check passes on it, the PEs' offsets need not be
+/// checked one by one.
 inline std::uint64_t offset_bits(const MonoPlaces& places, int num_pes) {
   std::array<std::uint64_t, kStripLanes> of_lane{};
   for (int first_pe = 0; first_pe < num_pes; first_pe += kStripLanes) {

@@ -7,9 +7,8 @@
 
 namespace cn {
 
-/// How a scalar type is held in host lanes and which instructions its operators are. Integers live in 64-bit
-/// lanes and are brought back into range after each operation, so a mask fits every type but float without
-/// conversion.
+/// How lanes hold a scalar type, and which instructions its operators are. Integers live in 64-bit lanes and
+/// are wrapped to their range after each operation. So a mask fits every type but float without conversion.
 template <class T>
 struct PolyTraits;
 
@@ -71,7 +70,8 @@ inline Lanes<typename PolyTraits<T>::Lane> wrap_lanes(const Lanes<typename PolyT
   }
 }
 
-/// One condition a PE. Combining conditions works on the enable bits' test register, a 16-bit operation.
+/// One condition for each PE. Combining conditions works on the enable bits' test register, a 16-bit
+/// operation.
 class mask {
  public:
   mask() = default;
@@ -96,9 +96,9 @@ class mask {
   MaskLanes lanes_;
 };
 
-/// A Cn poly variable: one T a PE. Operators compute all PEs of the strip and issue one instruction each; a
-/// mono operand stays a scalar. Assignment to an existing variable changes enabled PEs only; a new variable's
-/// disabled PEs are free.
+/// A Cn poly variable: one T for each PE. Operators compute all PEs of the strip and issue one instruction
+/// each; a mono operand stays a scalar. Assignment to an existing variable changes enabled PEs only. A new
+/// variable's disabled PEs are undefined.
 template <class T>
 class poly {
  public:
@@ -116,8 +116,9 @@ class poly {
     return *this;
   }
 
-  /// Renames a register: all PEs, no instruction. For temporaries whose old value nobody reads again.
-  void become(const poly& other) { lanes_ = other.lanes_; }
+  /// Assigns in all PEs; charges no instruction, because a compiler would rename a register. For variables
+  /// whose old value is never read again.
+  void assign_all_lanes(const poly& other) { lanes_ = other.lanes_; }
 
   const Lanes<Lane>& lanes() const { return lanes_; }
 
@@ -204,14 +205,13 @@ class poly {
   Lanes<Lane> lanes_;
 };
 
-/// Conversion between number formats; float to integer truncates towards zero.
+/// Converts between number formats; float to integer truncates towards zero.
 template <class To, class From>
 inline poly<To> convert(const poly<From>& from) {
   using ToLane = typename poly<To>::Lane;
   issue(InstructionClass::convert);
   if constexpr (std::is_same_v<To, double> && std::is_same_v<From, std::uint32_t>) {
-    // In the mantissa of 2^52 the integer is exact, and no vector extension before AVX-512 converts 64-bit
-    // lanes.
+    // The integer is exact in the mantissa of 2^52. No vector extension before AVX-512 converts 64-bit lanes.
     constexpr std::uint64_t kTwoTo52Bits = 0x4330000000000000u;
     const auto biased = bit_cast_lanes<double>(
         each_chunk<std::uint64_t>([&](int i) { return from.lanes().chunk[i] | kTwoTo52Bits; }));
@@ -220,8 +220,8 @@ inline poly<To> convert(const poly<From>& from) {
     return poly<float>(narrow_lanes(from.lanes()));
   } else {
     // Narrow numbers go through the signed 64-bit format, whose conversion is one instruction at every x86-64
-    // level: out of range, too, all levels give the same bits. That of unsigned ones differs between AVX-512
-    // and the others.
+    // level. So all levels give the same bits, also out of range. The conversion to unsigned differs between
+    // AVX-512 and the others.
     using Through =
         std::conditional_t<std::is_floating_point_v<From> && std::is_integral_v<To> && sizeof(To) < 8,
                            std::int64_t, ToLane>;
@@ -254,14 +254,14 @@ inline poly<To> reinterpret_word(const poly<From>& from) {
   return poly<To>(wrap_lanes<To>(bit_cast_lanes<typename poly<To>::Lane>(from.lanes())));
 }
 
-/// `if_set` where the condition holds, else `otherwise`; all PEs compute both.
+/// Returns `if_set` where the condition holds, else `otherwise`; all PEs compute both.
 template <class T>
 inline poly<T> select(const mask& condition, const poly<T>& if_set, const poly<T>& otherwise) {
   issue(InstructionClass::move);
   return poly<T>(select_lanes(condition.lanes(), if_set.lanes(), otherwise.lanes()));
 }
 
-/// The 64-bit product of two 32-bit numbers, as the two words that it leaves in.
+/// The 64-bit product of two 32-bit numbers, as two words.
 struct WideProduct {
   poly<std::uint32_t> high;
   poly<std::uint32_t> low;
@@ -274,13 +274,13 @@ inline WideProduct multiply_wide(const poly<std::uint32_t>& a, std::uint32_t b) 
           poly<std::uint32_t>(wrap_lanes<std::uint32_t>(product))};
 }
 
-/// The number whose words are `words`: two registers side by side.
+/// Joins two words to a number: two registers side by side.
 inline poly<std::uint64_t> join_words(const WideProduct& words) {
   return poly<std::uint64_t>(each_chunk<std::uint64_t>(
       [&](int i) { return (words.high.lanes().chunk[i] << 32) | words.low.lanes().chunk[i]; }));
 }
 
-/// This PE's number, 0 at the left end of the array.
+/// Returns this PE's number, 0 at the left end of the array.
 inline poly<std::int32_t> pe_num() {
   issue(InstructionClass::sram);  // the ABI keeps it in the top 16 bytes of poly SRAM
   const std::int64_t first = strip.first_pe;

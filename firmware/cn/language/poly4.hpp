@@ -25,12 +25,12 @@ struct Vector4Traits<float> {
   static constexpr auto kMultiplyAdd = InstructionClass::fp32_multiply_add_vector4;
 };
 
-/// Four poly variables of a PE that one vector instruction works on: its elements follow each other through
+/// Four poly variables of a PE that one vector instruction works on. Its elements follow each other through
 /// the pipelined adder or multiplier, one a cycle, where scalar code waits for each result. Four doubles are
 /// a quarter of a PE's 128 bytes of registers.
 ///
 /// An operand may be mono: one value for all four elements, or one for each. The control unit loads it from
-/// its data cache, an instruction of its own stream each (InstructionClass::mono).
+/// its data cache, with one instruction of its own stream for each value (InstructionClass::mono).
 template <class T>
 class poly4 {
  public:
@@ -41,9 +41,9 @@ class poly4 {
   poly4(const poly4&) = default;
   poly4& operator=(const poly4&) = delete;
 
-  /// Renames registers: all PEs, no instruction.
-  void become(const poly4& other) {
-    for (int i = 0; i < 4; ++i) element_[i].become(other.element_[i]);
+  /// Assigns in all PEs; charges no instruction (poly::assign_all_lanes).
+  void assign_all_lanes(const poly4& other) {
+    for (int i = 0; i < 4; ++i) element_[i].assign_all_lanes(other.element_[i]);
   }
 
   const poly<T>& operator[](int i) const { return element_[i]; }
@@ -91,7 +91,7 @@ inline poly4<T> each(F&& f) {
 
 }  // namespace vector4
 
-/// B is poly4<T>, T or mono4<T>, here and below.
+/// The operand type B is poly4<T>, T or mono4<T>, here and below.
 template <class T, class B>
 inline poly4<T> operator+(const poly4<T>& a, const B& b) {
   issue(Vector4Traits<T>::kAdd);
@@ -113,7 +113,7 @@ inline poly4<T> operator*(const poly4<T>& a, const B& b) {
   return vector4::each<T>([&](int e, int i) { return vector4::chunk(a, e, i) * vector4::chunk(b, e, i); });
 }
 
-/// a * b + c: the multiplier hands each product to the adder, both rounding.
+/// Returns a * b + c. The multiplier hands each product to the adder; both round.
 template <class T, class B>
 inline poly4<T> multiply_add(const poly4<T>& a, const B& b, const poly4<T>& c) {
   issue(Vector4Traits<T>::kMultiplyAdd);
@@ -123,7 +123,7 @@ inline poly4<T> multiply_add(const poly4<T>& a, const B& b, const poly4<T>& c) {
   });
 }
 
-/// a * b - c
+/// Returns a * b - c.
 template <class T, class B>
 inline poly4<T> multiply_subtract(const poly4<T>& a, const B& b, const poly4<T>& c) {
   issue(Vector4Traits<T>::kMultiplyAdd);
@@ -161,9 +161,9 @@ class PolyArray {
     return {element(at[0], 0), element(at[1], 0), element(at[2], 0), element(at[3], 0)};
   }
 
-  /// What load(at) gave the PE `steps` to the left (negative: right), after it travelled that many steps
-  /// along the PE-to-PE path, which is all that is charged here. PEs beyond the end of the path keep their
-  /// own. Strips of PEs are executed one after the other, so the kernel must not write these places.
+  /// Returns what load(at) returns in the PE `steps` to the left (negative: right). Only the steps along the
+  /// PE-to-PE path are charged. PEs beyond the end of the path keep their own value. Strips of PEs are
+  /// executed one after the other, so the kernel must not write these places.
   poly4<T> swazzle(const Indices4& at, int steps) const {
     issue(InstructionClass::swazzle_vector4, static_cast<std::uint64_t>(steps < 0 ? -steps : steps));
     return {element(at[0], steps), element(at[1], steps), element(at[2], steps), element(at[3], steps)};
@@ -173,8 +173,8 @@ class PolyArray {
     return swazzle(at, steps);
   }
 
-  /// Reaches enabled PEs only. A store needs a register read port that a multiply-add leaves none of, so it
-  /// does not overlap.
+  /// Writes in enabled PEs only. A store does not overlap vector arithmetic, because a multiply-add leaves no
+  /// register read port free.
   void store(const Indices4& at, const poly4<T>& value) const {
     issue(InstructionClass::sram, 4 * kWords);
     for (const int index : at) observe_sram(Access::write, span(index));
@@ -209,7 +209,7 @@ class PolyArray {
     return poly<T>(bit_cast_lanes<Lane>(travelled));
   }
 
-  /// Tells the observer, if there is one, that an enabled PE gets what another one reads.
+  /// Tells the observer, if there is one, that an enabled PE receives what another PE reads.
   void observe_travel(int index, int from_pe, int to_lane) const {
     if constexpr (kObservedSram) {
       if (strip.observer == nullptr || (mask_bits(strip.enabled) >> to_lane & 1) == 0) return;
@@ -221,26 +221,25 @@ class PolyArray {
   int offset_bytes_ = 0;
 };
 
-/// Vectors that travel down the PE-to-PE path in registers, one PE a step. The path is a line: what its last
-/// `feeders` PEs hold in `fed` follows the vectors that the PEs before them started with, in the order of the
-/// PEs, place after place, so those PEs never run out. Feeders work with no vector themselves.
+/// Vectors that travel down the PE-to-PE path in registers, one PE a step. The path is a line. Behind the
+/// vectors that its PEs start with come those that its last `feeders` PEs hold in `fed`, PE by PE and place
+/// after place, so that the PEs never run out. Feeders themselves work with no vector.
 template <class T>
 class VectorStream {
  public:
-  /// @param own_at first of four elements that each PE but the feeders starts with
-  /// @param fed_at first of four elements for each `feeders` steps
+  /// @param own_at first of the four elements that each PE but the feeders starts with
   VectorStream(const PolyArray<T>& own, int own_at, const PolyArray<T>& fed, int fed_at, int feeders)
       : own_(own), own_at_(own_at), fed_(fed), fed_at_(fed_at), feeders_(feeders) {}
 
-  /// To be called before each `feeders` steps: a load that is enabled in the feeders only.
+  /// Loads in the feeders only; call it before each `feeders` steps.
   void feed() const {
     issue(InstructionClass::enable, 2);
     issue(InstructionClass::sram_vector_load, 4 * PolyArray<T>::kWords);
   }
 
-  /// What the path has brought after so many steps, which are asked for one after the other from 0 on: that
-  /// is a load from `own`, each other one a step. A kernel may store to the places of `own` when it asks no
-  /// more: strips are executed in the order in which vectors leave them.
+  /// Returns what the path has brought after that many steps. Ask for 0, 1, 2, ... steps in order: 0 steps
+  /// are a load from `own`, each further step is one along the path. A kernel may store to the places of
+  /// `own` after its last call: strips are executed in the order in which vectors leave them.
   poly4<T> after(int steps) const {
     if (steps == 0) {
       issue(InstructionClass::sram_vector_load, 4 * PolyArray<T>::kWords);

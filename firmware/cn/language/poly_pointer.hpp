@@ -5,16 +5,16 @@
 
 namespace cn {
 
-/// A variable of type T at the same SRAM address in every PE, as the strip finds it: `word` is the strip's
-/// word that holds it, `shift` the bits below it. A record's fields are found from where the record is, by
-/// offsets that the compiler knows, so that most addresses cost the host nothing.
+/// A variable of type T at the same SRAM address in every PE, for the current strip: `word` is the strip's
+/// word that holds it, `shift` the bits below it. A record's fields are found from the record's address by
+/// offsets that the compiler knows, so that most addresses take the simulator no instruction.
 template <class T>
 class PolyPlace {
   static_assert(sizeof(T) == 4 || sizeof(T) == 8, "a narrower write would reach its neighbour in the word");
 
  public:
   /// @param record_bytes address of the record, a multiple of 8
-  /// @param field_bytes of the variable in it
+  /// @param field_bytes offset of the variable in the record
   PolyPlace(int record_bytes, int field_bytes)
       : word_(strip_word(record_bytes) + std::size_t(unsigned(field_bytes) / 8) * kStripLanes),
         shift_(static_cast<int>(unsigned(field_bytes) % 8 * 8)) {}
@@ -41,7 +41,7 @@ class PolyPlace {
     }
   }
 
-  /// Reaches enabled PEs only.
+  /// Writes in enabled PEs only.
   void write(const poly<T>& value) const {
     if constexpr (sizeof(T) == 8) {
       store_lanes(word_, select_lanes(strip.enabled, value.lanes(), load_lanes<Lane>(word_)));
@@ -58,14 +58,13 @@ class PolyPlace {
  private:
   using Lane = typename poly<T>::Lane;
 
-  /// A PE's bytes are a strip's words, so that the address needs no division.
-  /// @param offset_bytes a multiple of 8
+  /// Finds the strip's word. A strip has as many PEs as a word has bytes, so the address needs no division.
   static std::uint64_t* strip_word(int offset_bytes) {
     static_assert(kStripLanes == 8);
     return strip.words + std::size_t(unsigned(offset_bytes));
   }
 
-  /// A narrow variable's bits, zero above.
+  /// Returns the bits of a narrow variable, with zeros above.
   static Lanes<std::uint64_t> words_of(const poly<T>& value) {
     if constexpr (std::is_same_v<T, float>) {
       return each_lane<std::uint64_t>([&](int i) {
@@ -84,8 +83,8 @@ class PolyPlace {
   int shift_;
 };
 
-/// A variable of type T at the same SRAM address in every PE. Reading and writing it are SRAM accesses; a
-/// write reaches enabled PEs only.
+/// A variable of type T at the same SRAM address in every PE. Reading and writing it are SRAM accesses. A
+/// write changes enabled PEs only.
 template <class T>
 struct PolyField {
   int offset_bytes = 0;
@@ -112,8 +111,8 @@ struct PolyField {
 };
 
 /// A pointer to a Record in poly SRAM, at a multiple of 8. Fields are named by member pointer:
-/// `ray.get(&RayRecord::origin)`. Records are plain structs of 4- and 8-byte members (and vec3<double>), laid
-/// out alike in mono memory.
+/// `ray.get(&RayRecord::origin)`. Records are plain structs of 4- and 8-byte members (and vec3<double>) with
+/// the same layout in mono memory.
 template <class Record>
 class PolyPointer {
  public:
@@ -124,8 +123,14 @@ class PolyPointer {
   static constexpr int size_bytes() { return static_cast<int>(sizeof(Record)); }
   PolySpan span() const { return {offset_bytes_, size_bytes()}; }
 
-  /// The index-th record of an array that starts here.
+  /// Returns a pointer to the index-th record of an array that starts here.
   PolyPointer operator[](int index) const { return PolyPointer(offset_bytes_ + index * size_bytes()); }
+
+  /// Returns a pointer to a record that is a member of this one.
+  template <class Part>
+  PolyPointer<Part> part(Part Record::*member) const {
+    return PolyPointer<Part>(offset_bytes_ + offset_of(member));
+  }
 
   template <class T>
   PolyField<T> field(T Record::*member) const {

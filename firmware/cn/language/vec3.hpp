@@ -4,8 +4,8 @@
 
 namespace cn {
 
-/// Three components, poly or mono. GLM serves mono vectors on the host; here operands mix poly and mono, and
-/// a mono one must stay scalar.
+/// Three components, poly or mono. GLM serves mono vectors in the testbench. Here operands mix poly and mono,
+/// and a mono operand must stay scalar.
 template <class T>
 struct vec3 {
   T x;
@@ -23,7 +23,7 @@ inline auto operator-(const vec3<A>& a, const vec3<B>& b) -> vec3<decltype(a.x -
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// Component by component.
+/// Multiplies component by component.
 template <class A, class B>
 inline auto operator*(const vec3<A>& a, const vec3<B>& b) -> vec3<decltype(a.x * b.x)> {
   return {a.x * b.x, a.y * b.y, a.z * b.z};

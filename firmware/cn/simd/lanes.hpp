@@ -10,9 +10,9 @@
 
 namespace cn {
 
-/// PEs that the host executes together. Eight doubles are one register of AVX-512, two of AVX2 and four of
-/// SSE2. Wider strips gain nothing (tests/benchmarks/strip_width_benchmark.cpp), and with narrow ones the
-/// array's width is a run-time number.
+/// Number of PEs that the simulator executes together, a strip. Eight doubles are one register of AVX-512,
+/// two of AVX2 and four of SSE2. Wider strips gain nothing (tests/benchmarks/strip_width_benchmark.cpp), and
+/// with narrow ones the array's width is a run-time number.
 inline constexpr int kStripLanes = 8;
 
 /// Native vector width of the level this file is compiled for.
@@ -24,16 +24,16 @@ inline constexpr std::size_t kNativeBytes = 32;
 inline constexpr std::size_t kNativeBytes = 16;
 #endif
 
-/// Where a lane's value stands among those of its strip. AVX2 narrows and widens vectors half by half, so
-/// that floats in this order become words, or words floats, without crossing halves.
+/// The place of a lane's value among those of its strip. AVX2 narrows and widens vectors half by half. In
+/// this order floats become words, and words floats, without crossing halves.
 template <class T>
 constexpr int place_of_lane(int lane) {
   constexpr bool halves_are_apart = kNativeBytes == 32 && sizeof(T) * kStripLanes == kNativeBytes;
   return halves_are_apart ? (lane & 1) | (lane & 2) << 1 | (lane & 4) >> 1 : lane;
 }
 
-/// One value a PE for the PEs of a strip, in as many native vectors as that takes. GCC splits vectors wider
-/// than the machine's into scalars at comparisons and selects, hence the chunks.
+/// One value for each PE of a strip, in as many native vectors as that takes. GCC splits vectors wider than
+/// the machine's into scalars at comparisons and selects, hence the chunks.
 template <class T>
 struct Lanes {
   static constexpr std::size_t kBytes = kStripLanes * sizeof(T);
@@ -53,8 +53,8 @@ struct Lanes {
   }
 };
 
-/// Words of poly memory, to read and write whole rows by. They have the element type that poly memory really
-/// has and its alignment, so that the compiler knows which of a kernel's other values a store cannot change.
+/// Words of poly memory, to read and write whole rows. They have the element type and alignment of poly
+/// memory, so that the compiler knows which of a kernel's other values a store cannot change.
 using RowChunk __attribute__((vector_size(Lanes<std::uint64_t>::kChunkBytes), aligned(8))) = std::uint64_t;
 
 template <class R, class F, std::size_t... i>
@@ -74,7 +74,7 @@ inline void set_each_lane(Lanes<R>& result, F& f, std::index_sequence<i...>) {
   (result.set(int(i), f(int(i))), ...);
 }
 
-/// Applies `f` lane by lane, for what has no vector form.
+/// Applies `f` lane by lane, for operations without a vector form.
 template <class R, class F>
 inline Lanes<R> each_lane(F&& f) {
   Lanes<R> result;
@@ -88,7 +88,7 @@ inline Lanes<T> broadcast(T value) {
   return each_chunk<T>([&](int) { return value - typename Lanes<T>::Chunk{}; });
 }
 
-/// The same bits under another 8-byte type.
+/// Reads the same bits as another 8-byte type.
 template <class To, class From>
 inline Lanes<To> bit_cast_lanes(const Lanes<From>& from) {
   static_assert(sizeof(To) == 8 && sizeof(From) == 8);
@@ -130,7 +130,7 @@ inline Lanes<float> halves_of_words(const Lanes<std::uint64_t>& words) {
   });
 }
 
-/// 64-bit lanes with those halves.
+/// Returns 64-bit lanes with those halves.
 inline Lanes<std::uint64_t> words_of_halves(const Lanes<float>& low, const Lanes<float>& high) {
   return each_chunk<std::uint64_t>([&](int i) {
     using Chunk = Lanes<std::uint64_t>::Chunk;
@@ -151,7 +151,7 @@ inline Lanes<std::uint64_t> words_of_halves(const Lanes<float>& low, const Lanes
   });
 }
 
-/// To the nearest float.
+/// Rounds to the nearest float.
 inline Lanes<float> narrow_lanes(const Lanes<double>& a) {
   return each_chunk<float>([&](int i) {
     using Chunk = Lanes<float>::Chunk;
@@ -168,8 +168,7 @@ inline Lanes<float> narrow_lanes(const Lanes<double>& a) {
   });
 }
 
-/// Products of the low 32 bits of each lane. Spelled out because GCC makes a full 64-bit product of it
-/// otherwise.
+/// Multiplies the low 32 bits of each lane. Spelled out because GCC would compute a full 64-bit product.
 inline Lanes<std::uint64_t> multiply_low_words(const Lanes<std::uint64_t>& a, const Lanes<std::uint64_t>& b) {
   return each_chunk<std::uint64_t>([&](int i) {
     using Chunk = Lanes<std::uint64_t>::Chunk;

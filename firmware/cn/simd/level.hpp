@@ -13,13 +13,13 @@ namespace cn {
 /// Levels of the x86-64 instruction set that kernels can be built for; the same bits come from each.
 enum class Level : std::uint8_t { x86_64_v2, x86_64_v3, x86_64_v4 };
 
-/// A level that was not built, or that this processor does not execute; one line.
+/// Thrown for a level that was not built, or that this processor does not execute; one line.
 class LevelError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// "v2", "v3" or "v4".
+/// Returns "v2", "v3" or "v4".
 std::string name_of(Level level);
 
 /// Levels that this build has kernels for, narrow to wide.

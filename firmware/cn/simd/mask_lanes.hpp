@@ -4,9 +4,9 @@
 
 namespace cn {
 
-/// One condition a PE of a strip. AVX-512 has registers of such bits, and a condition that goes through lanes
-/// of all ones or zero instead takes two more steps, there and back, each time it is used; other levels have
-/// the lanes only.
+/// One condition for each PE of a strip. AVX-512 has registers for such bits; a condition held in lanes of
+/// all ones or zero instead takes two more steps, there and back, at each use. Other levels have such lanes
+/// only.
 #if defined(__AVX512F__)
 
 struct MaskLanes {
@@ -15,7 +15,7 @@ struct MaskLanes {
   std::int64_t operator[](int lane) const { return -static_cast<std::int64_t>((bits >> lane) & 1); }
 };
 
-/// Bit i is lane i's.
+/// Returns lane i's condition as bit i.
 inline std::uint32_t mask_bits(const MaskLanes& mask) {
   return mask.bits;
 }
@@ -23,8 +23,8 @@ inline MaskLanes mask_from_bits(std::uint32_t bits) {
   return {static_cast<__mmask8>(bits)};
 }
 
-/// A condition in memory. Not as a byte, since a byte may overlap everything: each time one is written, the
-/// compiler writes out and reads back all that it knows of the strip.
+/// A condition in memory. It is not a byte, because a byte may alias everything: at each write, the compiler
+/// would write out and read back all that it knows of the strip.
 class StoredMask {
  public:
   StoredMask() = default;
@@ -35,8 +35,8 @@ class StoredMask {
   std::uint16_t bits_ = 0;
 };
 
-// By intrinsics: of plain operators GCC makes a chain of comparisons, each under the mask of the one before
-// and five cycles after it.
+// Intrinsics, because GCC turns plain operators into a chain of comparisons, each under the mask of the one
+// before and five cycles after it.
 inline MaskLanes operator&(const MaskLanes& a, const MaskLanes& b) {
   return mask_from_bits(_kand_mask8(a.bits, b.bits));
 }
@@ -93,7 +93,7 @@ inline auto compare_values(const V& a, const V& b) {
 }
 
 #if defined(__AVX512F__)
-/// The operators' meaning of a comparison with NaN: only != holds.
+/// Compares NaN as the operators do: only != holds.
 template <Comparison comparison>
 inline MaskLanes compare_chunks(__m512d a, __m512d b) {
   constexpr int kPredicate = comparison == Comparison::equal       ? _CMP_EQ_OQ
@@ -113,7 +113,7 @@ inline MaskLanes compare_integer_chunks(__m512i a, __m512i b) {
 }
 #endif
 
-/// Of lanes of 32 bits as their type compares them.
+/// Compares lanes of 32 bits as their type does.
 template <Comparison comparison, class V>
 inline MaskLanes compare_narrow(const V* a, const V* b) {
 #if defined(__AVX512F__)

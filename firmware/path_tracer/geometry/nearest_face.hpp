@@ -6,7 +6,7 @@
 
 namespace path_tracer {
 
-/// A search that keeps the face of what it finds, too.
+/// A search result with the face of the nearest triangle.
 struct NearestFace : Nearest {
   poly<std::int32_t> face = kNoFace;
 

@@ -12,14 +12,14 @@ namespace path_tracer {
 using cn::mask;
 using cn::poly;
 
-/// A ray, with what every test of a triangle needs of it.
+/// A ray, as every test of a triangle needs it.
 struct RayOperands {
   Point3 origin;
   Direction3 direction;
   poly<std::int32_t> left_face;
 };
 
-/// A triangle that each PE has its own of.
+/// One triangle for each PE.
 struct PolyTriangle {
   Point3 vertex;
   Direction3 edge1;
@@ -29,7 +29,8 @@ struct PolyTriangle {
   poly<std::int32_t> number;
 };
 
-/// The control unit fetches 13 mono operands and turns the loop; poly ones are charged where they are read.
+/// Charges the control unit's work for a triangle: it fetches 13 mono operands and runs the loop. Poly
+/// operands are charged where they are read.
 inline void issue_operands(const TriangleRecord&) {
   cn::issue(cn::InstructionClass::mono, 16);
 }
@@ -37,10 +38,10 @@ inline void issue_operands(const PolyTriangle&) {
   cn::issue(cn::InstructionClass::mono, 3);
 }
 
-/// A line against a triangle, scaled by |determinant| so that no division is needed to test it: Moeller and
-/// Trumbore 1997, with numerators compared instead of quotients. Of their two cross products the one that is
-/// the triangle's alone is in its record, as Embree has it (Wald, Woop, Benthin, Johnson, Ernst, SIGGRAPH
-/// 2014): 18 multiplications instead of 24.
+/// Intersection of a line with a triangle, scaled by |determinant| so that the test needs no division:
+/// Moeller and Trumbore 1997, comparing numerators instead of quotients. One of their two cross products
+/// depends on the triangle only and is in its record, as in Embree (Wald, Woop, Benthin, Johnson, Ernst,
+/// SIGGRAPH 2014): 18 multiplications instead of 24.
 struct Crossing {
   poly<double> determinant;  ///< positive when the line meets the front
   poly<double> size;         ///< |determinant|
@@ -52,16 +53,16 @@ struct Crossing {
     issue_operands(triangle);
     const Direction3 to_vertex = triangle.vertex - ray.origin;
     const Direction3 moment = cross(ray.direction, to_vertex);
-    determinant.become(dot(ray.direction, triangle.back));
-    size.become(cn::abs(determinant));
-    distance.become(cn::flip_sign(dot(to_vertex, triangle.back), determinant));
+    determinant.assign_all_lanes(dot(ray.direction, triangle.back));
+    size.assign_all_lanes(cn::abs(determinant));
+    distance.assign_all_lanes(cn::flip_sign(dot(to_vertex, triangle.back), determinant));
     const poly<double> u = cn::flip_sign(dot(moment, triangle.edge2), determinant);
     const poly<double> minus_v = cn::flip_sign(dot(moment, triangle.edge1), determinant);
     inside = (u >= 0.0) & (minus_v <= 0.0) & (u - minus_v <= size) & (distance > 0.0);
   }
 };
 
-/// What a search starts from and what it finds.
+/// The nearest hit so far: what a search starts from and what it finds.
 struct Nearest {
   poly<double> distance = std::numeric_limits<double>::infinity();  ///< scaled by |determinant|
   poly<double> determinant = 1.0;
@@ -75,7 +76,7 @@ struct Nearest {
   }
 };
 
-/// Triangles that the control unit hands to all PEs one after the other.
+/// Triangles that the control unit broadcasts to all PEs one after the other.
 struct MonoTriangles {
   const TriangleRecord* first;
   int count;
@@ -84,7 +85,7 @@ struct MonoTriangles {
   mask where_there(int, const mask& lanes) const { return lanes; }
 };
 
-/// Sum of the components' sizes, which is at least the length.
+/// Returns the sum of the components' sizes, which is at least the length.
 inline poly<double> length_bound(const Direction3& direction) {
   return cn::abs(direction.x) + cn::abs(direction.y) + cn::abs(direction.z);
 }
@@ -101,11 +102,11 @@ inline const Direction3& as_poly(const Direction3& v) {
   return v;
 }
 
-/// The box's own test for a hit of which that is not certain.
+/// Tests the padded box itself, for a hit that is not certain to lie in it.
 template <class Triangle>
 mask meets_padded_box(const RayOperands& ray, double reach, const Crossing& crossing,
                       const Triangle& triangle) {
-  // The power of two that the edges are scaled by: edge2 x edge1 has it squared, `back` once.
+  // The power of two that scales the edges: edge2 x edge1 has its square, `back` has it once.
   const Direction3 edge1 = as_poly(triangle.edge1);
   const Direction3 edge2 = as_poly(triangle.edge2);
   const Direction3 back = as_poly(triangle.back);
@@ -118,8 +119,8 @@ mask meets_padded_box(const RayOperands& ray, double reach, const Crossing& cros
   return (slabs.entry <= slabs.exit) & (slabs.entry <= latest_entry(crossing.distance / crossing.size));
 }
 
-/// Whether `crossing` comes before `nearest` in the one order that every search keeps to, whatever order it
-/// meets triangles in: by the exact quotients of the computed distances and determinants, then by number.
+/// Whether `crossing` comes before `nearest`: by the exact quotients of the computed distances and
+/// determinants, then by number. Every search keeps to this order, in whatever order it meets the triangles.
 template <class Found>
 mask comes_before(const Crossing& crossing, const poly<std::int32_t>& number, const Found& nearest) {
   const poly<double> nearest_size = cn::abs(nearest.determinant);
@@ -131,7 +132,7 @@ mask comes_before(const Crossing& crossing, const poly<std::int32_t>& number, co
   return (left < right) | ((left == right) & (left_error < right_error)) | (same & (number < nearest.number));
 }
 
-/// Takes `triangle` where it is a candidate and nearer than `nearest`; returns where it is as near.
+/// Takes `triangle` where it is a candidate and nearer than `nearest`. Returns the lanes where it is as near.
 template <class Found, class Triangle>
 mask take_nearer(const Crossing& crossing, const Triangle& triangle, const mask& candidate, Found& nearest) {
   const poly<double> left = crossing.distance * cn::abs(nearest.determinant);
@@ -141,8 +142,8 @@ mask take_nearer(const Crossing& crossing, const Triangle& triangle, const mask&
   return as_near;
 }
 
-/// The search without what rounding may do: of the lanes that it returns, two crossings were too close to
-/// tell which is nearer.
+/// Searches without regard to rounding. Returns the lanes in which two crossings were too close to tell which
+/// is nearer.
 template <class Found, class Triangles>
 mask search_fast(const RayOperands& ray, const Triangles& triangles, Found& nearest) {
   mask tied(cn::mask_from_bits(0));
@@ -170,18 +171,34 @@ void search_exactly(const RayOperands& ray, double reach, const Triangles& trian
   }
 }
 
-/// Puts the nearest of `triangles` in the place of `nearest` where it comes before. A ray ignores the face
-/// that it leaves. The exact search runs only for a PE that needs it: where the fast one met no tie and its
-/// result is certain, no other crossing can come before that.
-template <class Found, class Triangles>
-void search(const RayOperands& ray, double reach, const Triangles& triangles, Found& nearest) {
+/// The fast part of a search as the Cn code has it: each PE tests each triangle.
+struct FastSearch {
+  template <class Found, class Triangles>
+  mask operator()(const RayOperands& ray, const Triangles& triangles, Found& nearest) const {
+    return search_fast(ray, triangles, nearest);
+  }
+};
+
+/// Replaces `nearest` by the nearest of `triangles` where that comes before it. A ray ignores the face that
+/// it leaves. The exact search runs only if a PE needs it: where the fast one met no tie and its result is
+/// certain, no other crossing can come before that result.
+/// @param fast finds what FastSearch finds
+template <class Fast, class Found, class Triangles>
+void search_by(const Fast& fast, const RayOperands& ray, double reach, const Triangles& triangles,
+               Found& nearest) {
   const Found start = nearest;
-  const mask tied = search_fast(ray, triangles, nearest);
+  const mask tied = fast(ray, triangles, nearest);
   const mask changed = nearest.number != start.number;
   cn::poly_if_any(tied | (changed & !is_certain(nearest.determinant, ray)), [&] {
     nearest = start;
     search_exactly(ray, reach, triangles, nearest);
   });
+}
+
+/// search_by() with each PE testing each triangle.
+template <class Found, class Triangles>
+void search(const RayOperands& ray, double reach, const Triangles& triangles, Found& nearest) {
+  search_by(FastSearch{}, ray, reach, triangles, nearest);
 }
 
 }  // namespace path_tracer

@@ -5,19 +5,19 @@
 
 #include "firmware/path_tracer/records/records.hpp"
 
-/// Which box a triangle's hits lie in for certain, so that a tree of boxes finds the hits that a test of
-/// every triangle finds, to the last bit.
+/// Boxes that contain a triangle's hits for certain, so that a tree of boxes finds the same hits as a test of
+/// every triangle, to the last bit.
 ///
-/// The test (triangle.hpp) rounds. A ray that passes a triangle at the distance of a rounding error may count
-/// as a hit, and one that grazes its plane may count as a hit far from it. So boxes are padded, and a hit
-/// whose determinant is so small that rounding may have moved it out of the padded box must pass the box's
-/// own test (box.hpp), which no box around that one can fail. All others pass it anyway:
+/// The test (triangle.hpp) rounds. A ray that misses a triangle by a rounding error may count as a hit, and
+/// one that grazes its plane may count as a hit far from it. So boxes are padded. If a hit's determinant is
+/// so small that rounding may have moved the hit out of the padded box, the ray must also pass the test of
+/// that box (box.hpp); then it passes the test of every box around it. All other hits pass it anyway:
 ///
-/// With e = 2^-53, `reach` at least the length of any way from a ray's origin to a vertex, and s the size of
-/// the determinant, the rounding of the test moves a hit within the triangle by less than
-/// 36 e |direction| reach |edge1| |edge2| / s, and along the ray by less than 20 of the same. The test of
-/// boxes rounds by 16 e reach at most. So where s / |direction| is at least 64 e reach |edge1| |edge2| /
-/// padding, with a padding of at least 2^-40 reach, the padded box is met, and not behind the hit.
+/// Let e = 2^-53, `reach` at least the distance of any ray's origin from any vertex, and s the size of the
+/// determinant. The rounding of the test moves a hit within the triangle by less than 36 e |direction| reach
+/// |edge1| |edge2| / s, and along the ray by less than 20 of the same. The test of boxes rounds by at most 16
+/// e reach. So if s / |direction| is at least 64 e reach |edge1| |edge2| / padding, with a padding of at
+/// least 2^-40 reach, the padded box is met, and not behind the hit.
 namespace path_tracer {
 
 template <class Number>
@@ -31,8 +31,8 @@ inline constexpr double kPaddingOfExtent = 0x1p-14;
 inline constexpr double kPaddingOfReach = 0x1p-40;
 inline constexpr double kRoundings = 64 * 0x1p-53;
 
-/// The same operations in the same order for mono and poly numbers.
-/// @param edge1 as it is, not scaled
+/// Computes the padded box, with the same operations in the same order for mono and poly numbers.
+/// @param edge1 not scaled
 template <class Number>
 PaddedBox<Number> padded_box(const vec3<Number>& vertex, const vec3<Number>& edge1, const vec3<Number>& edge2,
                              double reach) {
@@ -51,9 +51,9 @@ PaddedBox<Number> padded_box(const vec3<Number>& vertex, const vec3<Number>& edg
   return {lower - paddings, upper + paddings, padding};
 }
 
-/// The power of two that edges and back are multiplied by: with it a hit is certain to lie in the padded box
+/// Returns the power of two that scales edges and `back`. With it, a hit is certain to lie in the padded box
 /// if the determinant's size is at least the sum of the direction's components. The test of a triangle is the
-/// same at every scale, and its products then stay far from what a double cannot hold.
+/// same at every scale, and this scale keeps its products far from overflow and underflow.
 inline double record_scale(const vec3<double>& vertex, const vec3<double>& edge1, const vec3<double>& edge2,
                            double reach) {
   const auto length = [](const vec3<double>& v) {
@@ -67,15 +67,15 @@ inline double record_scale(const vec3<double>& vertex, const vec3<double>& edge1
   return std::scalbn(1.0, std::clamp(-std::ilogb(least) - 1, -1000, 1000));
 }
 
-/// Where a triangle stands in the scene.
+/// Identity of a triangle in the scene.
 struct TrianglePlace {
   std::int32_t face = kNoFace;
   std::int32_t number = 0;
   double reach = 0;  ///< of the scene
 };
 
-/// The cross product in the host's extended precision: long thin triangles cancel most of its digits, and it
-/// is made only once.
+/// Makes the record. The cross product is computed in extended precision, because in long thin triangles most
+/// of its digits cancel; it is made only once.
 inline TriangleRecord triangle_record(const vec3<double>& vertex, const vec3<double>& edge1,
                                       const vec3<double>& edge2, const TrianglePlace& place) {
   const double scale = record_scale(vertex, edge1, edge2, place.reach);

@@ -2,8 +2,9 @@
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
 
-#include "firmware/path_tracer/geometry/sifted_search.hpp"
+#include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
+#include "firmware/path_tracer/prefilter/prefilter_search.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
 
@@ -22,8 +23,8 @@ void intersect(const IntersectArguments& arguments) {
   const RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
                         arguments.ray.get(&RayRecord::left_face)};
   Nearest nearest;
-  search(ray, arguments.reach,
-         SiftedTriangles{{arguments.triangles, arguments.triangle_count}, arguments.sieve}, nearest);
+  search_by(PrefilteredSearch{arguments.prefilter}, ray, arguments.reach,
+            MonoTriangles{arguments.triangles, arguments.triangle_count}, nearest);
   write_hit(nearest, ray.origin, ray.direction, arguments.hit);
   arguments.surface_place.write(place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord)));
   cn::keep(nearest.number >= 0, *arguments.hit_something);
@@ -39,7 +40,8 @@ struct Surface {
   vec3<poly<double>> reflectance;
 };
 
-/// A shadow ray from `surface`, and what its answer will be worth; `wants_light` says where there can be one.
+/// Aims a shadow ray from `surface` and records what it contributes if it reaches its light. `wants_light` is
+/// true where the surface can reflect light.
 void aim(const ScatterArguments& arguments, const Surface& surface, const mask& wants_light) {
   const PolyPointer<LightRecord>& light = arguments.light;
   const LightSurface light_surface{light.get(&LightRecord::vertex), light.get(&LightRecord::edge1),
@@ -75,7 +77,7 @@ void scatter(const ScatterArguments& arguments) {
       scatter_numbers(arguments.sampler, arguments.seed, arguments.path.get(&PathRecord::pixel),
                       arguments.path.get(&PathRecord::sample), depth);
 
-  // Russian roulette on the surface alone: the path before it need not be loaded.
+  // Russian roulette depends on the surface alone, so that the path before it need not be loaded.
   const mask safe = depth < arguments.roulette_start;
   const poly<double> survival =
       cn::select(safe, poly<double>(1.0), cn::min(albedo, poly<double>(arguments.max_survival)));
@@ -135,40 +137,22 @@ void append(const AppendArguments& arguments) {
   cn::keep(finished, *arguments.finished);
 }
 
-/// number * stride modulo the number of pixels: products below 2^53 are exact, and the quotient by
-/// multiplication is at most one off.
-poly<std::int32_t> strided_pixel(const poly<std::int32_t>& number, int stride, std::int32_t pixels) {
-  const poly<double> place = cn::convert<double>(number) * double(stride);
-  const poly<double> rounds = cn::convert<double>(cn::convert<std::int32_t>(place * (1.0 / pixels)));
-  const poly<double> rest = place - rounds * double(pixels);
-  const poly<double> above = cn::select(rest < 0.0, rest + double(pixels), rest);
-  return cn::convert<std::int32_t>(cn::select(above >= double(pixels), above - double(pixels), above));
-}
-
-void start_camera_path(const ReplaceArguments& arguments, const poly<std::int32_t>& number) {
-  const std::int32_t pixels = arguments.camera->width * arguments.camera->height;
-  poly<std::int32_t> pixel = number + arguments.next_pixel;
-  poly<std::int32_t> sample = arguments.next_sample;
-  cn::poly_while([&] { return pixel >= pixels; },
-                 [&] {
-                   pixel -= pixels;
-                   sample += 1;
-                 });
-  if (arguments.pixel_stride != 1) pixel = strided_pixel(pixel, arguments.pixel_stride, pixels);
-  const UniformPair in_pixel = camera_numbers(arguments.sampler, arguments.seed, pixel, sample);
-  const CameraRay ray = sample_camera(*arguments.camera, pixel, in_pixel.u, in_pixel.v);
+/// The camera ray with that number begins a path.
+void start_path(const ContinuePathsArguments& arguments, const poly<std::int32_t>& number) {
+  const CameraSample at = camera_sample(*arguments.camera, arguments.camera_rays, number);
+  const CameraRay ray = generate_camera_ray(*arguments.camera, arguments.sampler, arguments.seed, at);
   arguments.ray.set(&RayRecord::origin, ray.origin);
   arguments.ray.set(&RayRecord::direction, ray.direction);
   arguments.ray.set(&RayRecord::left_face, poly<std::int32_t>(kNoFace));
   arguments.ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
-  arguments.next_path.set(&PathRecord::pixel, pixel);
-  arguments.next_path.set(&PathRecord::sample, sample);
+  arguments.next_path.set(&PathRecord::pixel, at.pixel);
+  arguments.next_path.set(&PathRecord::sample, at.sample);
   arguments.next_path.set(&PathRecord::depth, poly<std::int32_t>(0));
   arguments.next_path.set(&PathRecord::vertices, poly<std::int32_t>(0));
   arguments.next_path.set(&PathRecord::folded, poly<std::int32_t>(0));
 }
 
-void continue_path(const ReplaceArguments& arguments) {
+void continue_path(const ContinuePathsArguments& arguments) {
   const mask flushed = kept_mask(*arguments.finished);
   arguments.ray.set(&RayRecord::origin, arguments.scatter.get(&ScatterRecord::position));
   arguments.ray.set(&RayRecord::direction, arguments.scatter.get(&ScatterRecord::direction));
@@ -183,9 +167,9 @@ void continue_path(const ReplaceArguments& arguments) {
   arguments.next_path.set(&PathRecord::folded, cn::select(flushed, poly<std::int32_t>(1), folded));
 }
 
-/// For the shadow ray of the vertex that the new ray will find; so early because the light is loaded with the
-/// vertex.
-void choose_light(const ReplaceArguments& arguments) {
+/// Chooses the light for the shadow ray of the vertex that the new ray will find. It is chosen this early
+/// because the light is loaded together with the vertex.
+void choose_light(const ContinuePathsArguments& arguments) {
   const PolyPointer<PathRecord>& path = arguments.next_path;
   const LightNumbers numbers = light_numbers(arguments.sampler, arguments.seed, path.get(&PathRecord::pixel),
                                              path.get(&PathRecord::sample), path.get(&PathRecord::depth),
@@ -195,11 +179,11 @@ void choose_light(const ReplaceArguments& arguments) {
   arguments.light_place.write(place_of(arguments.lights, numbers.light, sizeof(LightRecord)));
 }
 
-void replace(const ReplaceArguments& arguments) {
+void continue_paths(const ContinuePathsArguments& arguments) {
   const mask ended = kept_mask(*arguments.ended);
   const poly<std::int32_t> number = arguments.number.read();
   const mask starts = ended & (number < arguments.remaining);
-  cn::poly_if_any(starts, [&] { start_camera_path(arguments, number); });
+  cn::poly_if_any(starts, [&] { start_path(arguments, number); });
   cn::poly_if_any(!ended, [&] { continue_path(arguments); });
   if (arguments.light_cdf != nullptr) choose_light(arguments);
   cn::keep(starts | !ended, *arguments.live);
@@ -232,7 +216,7 @@ struct FoldSum {
   vec3<poly<double>> throughput;
 };
 
-/// Puts the vertices that were folded when the slot was full before those of `sum`.
+/// Prepends the vertices that were folded when the slot was full to those of `sum`.
 void join_earlier(const FoldArguments& arguments, FoldSum& sum) {
   cn::poly_if(kept_mask(*arguments.folded), [&] {
     const vec3<poly<double>> throughput = arguments.earlier.get(&FoldRecord::throughput);
@@ -250,8 +234,8 @@ void save_sum(const FoldArguments& arguments, const FoldSum& sum) {
   arguments.flushed.set(&FoldRecord::throughput, sum.throughput);
 }
 
-/// The recursion L = radiance + weight * L, from a path's last vertex to its first. Where only some of a path
-/// is here, the product of its weights goes along.
+/// The recursion L = radiance + weight * L, from a path's last vertex to its first. If only a part of the
+/// path is here, the product of its weights is kept as well.
 void fold(const FoldArguments& arguments) {
   FoldSum sum{{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
   if (!arguments.starts) {
@@ -284,7 +268,7 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<ScatterArguments, scatter>("scatter"),
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),
-      cn::kernel<ReplaceArguments, replace>("replace"),
+      cn::kernel<ContinuePathsArguments, continue_paths>("continue_paths"),
       cn::kernel<FinishedPlaceArguments, finished_place>("finished_place"),
       cn::kernel<ListArguments, list>("list"),
       cn::kernel<FoldArguments, fold>("fold"),

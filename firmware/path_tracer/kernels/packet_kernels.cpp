@@ -31,13 +31,13 @@ void want(const WantArguments& arguments) {
     arguments.keys[arguments.keys.place(arguments.level, i)].write(poly<std::int32_t>(kNotMet));
 }
 
-/// Where a ray enters and leaves four children's boxes, by axis.
+/// The distances at which a ray enters and leaves four children's boxes, by axis.
 struct Slabs4 {
   poly4<double> entry[kAxes];
   poly4<double> exit[kAxes];
 
-  /// The same numbers as BoxRay makes. Nodes are the same for all PEs, but which side of a box is near is
-  /// not, so that both are computed before they are told apart.
+  /// Computes the same numbers as BoxRay. Nodes are the same for all PEs, but the near side of a box is not;
+  /// so both sides are computed before they are told apart.
   Slabs4(const MonoNode::Four& four, const Point3& origin, const Direction3& minus_inverse) {
     for (int axis = 0; axis < kAxes; ++axis) {
       const poly<double>& scale = component(minus_inverse, axis);
@@ -45,8 +45,8 @@ struct Slabs4 {
       const poly4<double> lower = (from - four.lower[axis]) * same4(scale);
       const poly4<double> upper = (from - four.upper[axis]) * same4(scale);
       const mask backward = scale > 0.0;
-      entry[axis].become(cn::select(backward, upper, lower));
-      exit[axis].become(cn::select(backward, lower, upper));
+      entry[axis].assign_all_lanes(cn::select(backward, upper, lower));
+      exit[axis].assign_all_lanes(cn::select(backward, lower, upper));
     }
   }
 };
@@ -65,8 +65,9 @@ void visit(const VisitArguments& arguments) {
       const poly<double> to = cn::min(cn::min(slabs.exit[0][i], slabs.exit[1][i]), slabs.exit[2][i]);
       const poly<std::int32_t> entry = signed_high_word(from);
       const int child = four + i;
-      key[child].become(cn::select((from <= to) & (entry <= limit), entry, poly<std::int32_t>(kNotMet)));
-      first.become(cn::min(first, key[child]));
+      key[child].assign_all_lanes(
+          cn::select((from <= to) & (entry <= limit), entry, poly<std::int32_t>(kNotMet)));
+      first.assign_all_lanes(cn::min(first, key[child]));
       arguments.keys[arguments.keys.place(arguments.level, child)].write(key[child]);
     }
   }
@@ -74,7 +75,8 @@ void visit(const VisitArguments& arguments) {
   for (int i = 0; i < node.children; ++i) cn::keep((key[i] == first) & meets_any, arguments.enters_first[i]);
 }
 
-/// What a leaf changes; a shadow ray is over when something is nearer than its light (traversal_kernels.cpp).
+/// Writes what a leaf changed. A shadow ray is finished when something is nearer than its light
+/// (traverse.hpp).
 void write_nearest(const TestLeafArguments& arguments, const NearestFace& nearest,
                    const poly<std::int32_t>& light_face) {
   const PolyPointer<TraversalRecord>& record = arguments.record;
@@ -92,13 +94,14 @@ void test_leaf(const TestLeafArguments& arguments) {
   const RayOperands ray = ray_of(record);
   const poly<std::int32_t> light_face = record.get(&TraversalRecord::light_face);
   NearestFace nearest;
-  nearest.distance.become(record.get(&TraversalRecord::distance));
-  nearest.determinant.become(record.get(&TraversalRecord::determinant));
+  nearest.distance.assign_all_lanes(record.get(&TraversalRecord::distance));
+  nearest.determinant.assign_all_lanes(record.get(&TraversalRecord::determinant));
   const poly<std::int32_t> number = record.get(&TraversalRecord::number);
-  nearest.number.become(number);
-  nearest.face.become(light_face);
+  nearest.number.assign_all_lanes(number);
+  nearest.face.assign_all_lanes(light_face);
   search(ray, arguments.reach, MonoTriangles{arguments.triangles, arguments.count}, nearest);
-  // One that missed its light finds out what else it hits, as the light's face may have other triangles.
+  // A shadow ray that missed its light finds what else it hits, because the light's face may have other
+  // triangles.
   record.set(&TraversalRecord::light_face,
              cn::select(nearest.number < 0, poly<std::int32_t>(kNoFace), light_face));
   cn::poly_if_any(nearest.number != number, [&] { write_nearest(arguments, nearest, light_face); });

@@ -3,29 +3,30 @@
 #include "firmware/path_tracer/kernels/traversal_kernels.hpp"
 #include "firmware/path_tracer/tree/mono_node.hpp"
 
-/// The poly programs of packets, which have nodes and triangles as mono operands.
+/// The poly programs of packets. Nodes and triangles are their mono operands.
 namespace path_tracer {
 
-/// Behind a TraversalRecord, whose part on the way through the tree packets do not use.
+/// A packet's part of a ray, beside its TraversalRecord. Packets do not use that record's state of the
+/// traversal.
 struct PacketRecord {
   vec3<double> minus_inverse{};  ///< of the direction (BoxRay)
-  /// Upper half of the latest entry into a box that is of use, or kNoMore.
+  /// Upper half of the latest entry into a box that matters, or kNoMore.
   std::int32_t limit = 0;
-  std::int32_t light = 0;  ///< that a shadow ray begins at
+  std::int32_t light = 0;  ///< number of a shadow ray's light
 };
 
-/// Limit of a ray that is through: below every key.
+/// Limit of a finished ray: below every key.
 inline constexpr std::int32_t kNoMore = -1;
 
-/// A ray's key for a box: the upper half of the double at which it enters, or this, above every limit.
+/// A ray's key for a box that it misses: above every limit. Otherwise the key is the upper half of the double
+/// at which the ray enters.
 inline constexpr std::int32_t kNotMet = 0x7fffffff;
 
-/// A ray's keys, in its PE's SRAM: the root's, then those of the children of the node that the packet is in
-/// on each level.
+/// A ray's keys in its PE's SRAM: the root's, then for each level those of the children of the packet's node.
 class PacketKeys {
  public:
   PacketKeys() = default;
-  /// @param span bytes(width) of them
+  /// @param span of bytes(width) bytes
   PacketKeys(cn::PolySpan span, int width) : offset_bytes_(span.offset_bytes), width_(width) {}
 
   static constexpr int bytes(int width) { return (2 + width * max_tree_levels(width)) / 2 * 8; }
@@ -43,7 +44,7 @@ class PacketKeys {
   int width_ = 0;
 };
 
-/// Behind the kernel `enter`.
+/// After the kernel `enter`: prepares the rays of a packet.
 struct BeginPacketArguments {
   PolyPointer<QueuedRay> ray;
   PolyPointer<TraversalRecord> record;
@@ -52,13 +53,13 @@ struct BeginPacketArguments {
   LaneMask* seeks_light = nullptr;
 };
 
-/// Which rays want what the packet comes to next.
+/// Tells which rays need the packet's next node or leaf.
 struct WantArguments {
   PolyPointer<PacketRecord> packet;
   PacketKeys keys;
   int place = 0;
-  /// Of a node: that its children's keys are to be cleared, as the kernel `visit` reaches only those who want
-  /// it.
+  /// Whether the next is a node. Then its children's keys are cleared, because the kernel `visit` runs only
+  /// for the rays that need it.
   bool is_node = false;
   int level = 0;
   LaneMask* wanting = nullptr;
@@ -71,7 +72,7 @@ struct VisitArguments {
   const MonoNode* node = nullptr;
   PacketKeys keys;
   int level = 0;
-  LaneMask* enters_first = nullptr;  ///< for each child: who enters no other one earlier
+  LaneMask* enters_first = nullptr;  ///< for each child: the rays that enter no other child earlier
 };
 
 /// Tests triangles.

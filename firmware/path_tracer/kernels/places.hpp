@@ -6,7 +6,7 @@
 
 namespace path_tracer {
 
-/// The mono address of the index-th record of an array.
+/// Returns the mono address of the index-th record of an array.
 inline poly<cn::MonoAddress> place_of(cn::MonoAddress first, const poly<std::int32_t>& index,
                                       std::size_t record_bytes) {
   const cn::WideProduct offset =
@@ -14,7 +14,7 @@ inline poly<cn::MonoAddress> place_of(cn::MonoAddress first, const poly<std::int
   return cn::join_words(offset) + first;
 }
 
-/// What the intersection bin is told of a search that is over.
+/// Writes the result of a finished search for the intersection stage.
 inline void write_hit(const Nearest& nearest, const Point3& origin, const Direction3& direction,
                       const cn::PolyPointer<HitRecord>& hit) {
   const mask something = nearest.number >= 0;

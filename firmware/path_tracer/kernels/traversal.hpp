@@ -5,8 +5,8 @@
 
 namespace path_tracer {
 
-/// The part of a TraversalRecord that says where a ray goes on, in registers while it does.
-struct Way {
+/// The part of a TraversalRecord that says where a ray continues, held in registers during a turn.
+struct TraversalState {
   poly<std::int32_t> node;
   poly<std::int32_t> level;
   poly<std::int32_t> leaf;
@@ -16,7 +16,7 @@ struct Way {
   poly<std::int32_t> stack_top;
   poly<std::int32_t> stack_count;
 
-  explicit Way(const PolyPointer<TraversalRecord>& record)
+  explicit TraversalState(const PolyPointer<TraversalRecord>& record)
       : node(record.get(&TraversalRecord::node)),
         level(record.get(&TraversalRecord::level)),
         leaf(record.get(&TraversalRecord::leaf)),
@@ -24,8 +24,8 @@ struct Way {
         trail(record.get(&TraversalRecord::trail)),
         more(record.get(&TraversalRecord::more)) {
     const poly<std::int32_t> stack = record.get(&TraversalRecord::stack);
-    stack_top.become(stack & poly<std::int32_t>(0xffff));
-    stack_count.become(stack >> 16);
+    stack_top.assign_all_lanes(stack & poly<std::int32_t>(0xffff));
+    stack_count.assign_all_lanes(stack >> 16);
   }
 
   void write(const PolyPointer<TraversalRecord>& record) const {
@@ -41,32 +41,32 @@ struct Way {
   mask is_over() const { return (node == kTraversalOver) & (leaf_count == 0); }
 };
 
-/// Takes rays from node to node as far as the nodes in SRAM go. See TraversalRecord for the method.
+/// Takes rays from node to node through the nodes in SRAM. TraversalRecord describes the method.
 template <NodeFormat format, int width>
-class Traveller {
+class TreeWalker {
  public:
   /// @param treelet first slot of the loaded treelet
-  Traveller(const TreeInSram& tree, const PolyPointer<TraversalRecord>& record, const NodeRay<format>& ray,
-            const poly<std::int32_t>& treelet, Way& way)
+  TreeWalker(const TreeInSram& tree, const PolyPointer<TraversalRecord>& record, const NodeRay<format>& ray,
+             const poly<std::int32_t>& treelet, TraversalState& state)
       : tree_(tree),
         stack_offset_(record.span().offset_bytes + int{sizeof(TraversalRecord)}),
         visitor_(ray, tree.shape.layout),
         treelet_(treelet),
-        way_(way) {}
+        state_(state) {}
 
-  /// To the next leaf, to a node that is not here, to the end, or as far as a turn goes.
-  void travel() {
+  /// Walks to the next leaf, to a node that is not in SRAM, to the end, or to the end of the turn.
+  void walk() {
     if (tree_.shape.visits == 0) {
-      cn::poly_while([&] { return can_go_on(); }, [&] { go_on(); });
+      cn::poly_while([&] { return can_step(); }, [&] { step(); });
     } else {
-      for (int visit = 0; visit < tree_.shape.visits; ++visit) go_on();
+      for (int visit = 0; visit < tree_.shape.visits; ++visit) step();
     }
   }
 
  private:
-  void go_on() {
-    cn::poly_if_any((way_.node == kNextOnStack) & (way_.leaf_count == 0), [&] { pop(); });
-    cn::poly_if_any(is_here(way_.node) & (way_.leaf_count == 0), [&] { visit(); });
+  void step() {
+    cn::poly_if_any((state_.node == kNextOnStack) & (state_.leaf_count == 0), [&] { pop(); });
+    cn::poly_if_any(is_here(state_.node) & (state_.leaf_count == 0), [&] { visit(); });
   }
 
   mask is_resident(const poly<std::int32_t>& node) const { return node < tree_.shape.resident_nodes; }
@@ -75,8 +75,8 @@ class Traveller {
     return (node >= 0) & (is_resident(node) |
                           ((in_treelet >= 0) & (in_treelet < poly<std::int32_t>(tree_.shape.treelet_nodes))));
   }
-  mask can_go_on() const {
-    return (way_.leaf_count == 0) & ((way_.node == kNextOnStack) | is_here(way_.node));
+  mask can_step() const {
+    return (state_.leaf_count == 0) & ((state_.node == kNextOnStack) | is_here(state_.node));
   }
   PolyAddress address(const poly<std::int32_t>& node) const {
     const mask resident = is_resident(node);
@@ -87,37 +87,38 @@ class Traveller {
   }
   PolyAddress stack_address(const poly<std::int32_t>& place) const { return (place << 3) + stack_offset_; }
 
-  /// The child of `reference` is next.
+  /// Makes the child of `reference` the next.
   void enter(const poly<std::uint32_t>& reference) {
     const poly<std::int32_t> count = cn::reinterpret_word<std::int32_t>(
         (reference >> PackedReference::kFirstBits) & poly<std::uint32_t>(PackedReference::kCountMask));
     const poly<std::int32_t> first =
         cn::reinterpret_word<std::int32_t>(reference & poly<std::uint32_t>(PackedReference::kFirstMask));
-    way_.leaf = first;
-    way_.leaf_count = count;
-    way_.node = cn::select(count > 0, poly<std::int32_t>(kNextOnStack), first);
+    state_.leaf = first;
+    state_.leaf_count = count;
+    state_.node = cn::select(count > 0, poly<std::int32_t>(kNextOnStack), first);
   }
 
   void push(const poly<std::uint64_t>& entry) {
     const int wrap = tree_.shape.stack_entries - 1;
-    cn::store_at(stack_address(way_.stack_top), entry);
-    way_.stack_top = (way_.stack_top + 1) & poly<std::int32_t>(wrap);
-    way_.stack_count = cn::min(way_.stack_count + 1, poly<std::int32_t>(wrap + 1));
+    cn::store_at(stack_address(state_.stack_top), entry);
+    state_.stack_top = (state_.stack_top + 1) & poly<std::int32_t>(wrap);
+    state_.stack_count = cn::min(state_.stack_count + 1, poly<std::int32_t>(wrap + 1));
   }
 
   void visit() {
-    const VisitOrder<width> order = visitor_.visit(address(way_.node));
+    const VisitOrder<width> order = visitor_.visit(address(state_.node));
     poly<std::uint64_t> entry[width];
-    for (int i = 0; i < width; ++i) entry[i].become(order.entry[i]);
-    const poly<std::int32_t> trail_shift = way_.level * kTrailBits;
-    const poly<std::int32_t> left_behind = cn::reinterpret_word<std::int32_t>(
-        cn::low_word(cn::shift_right(way_.trail, trail_shift)) & poly<std::uint32_t>((1u << kTrailBits) - 1));
+    for (int i = 0; i < width; ++i) entry[i].assign_all_lanes(order.entry[i]);
+    const poly<std::int32_t> trail_shift = state_.level * kTrailBits;
+    const poly<std::int32_t> left_behind =
+        cn::reinterpret_word<std::int32_t>(cn::low_word(cn::shift_right(state_.trail, trail_shift)) &
+                                           poly<std::uint32_t>((1u << kTrailBits) - 1));
     cn::poly_if_any(left_behind > 0, [&] { skip(left_behind, entry); });
 
     const poly<std::uint64_t> none = NodeRay<format>::kNoEntry;
     const mask has_siblings = entry[1] != none;
-    const poly<std::uint32_t> level_bit = cn::low_word(cn::shift_left(poly<std::uint64_t>(1), way_.level));
-    way_.more = way_.more | cn::select(has_siblings, level_bit, poly<std::uint32_t>(0u));
+    const poly<std::uint32_t> level_bit = cn::low_word(cn::shift_left(poly<std::uint64_t>(1), state_.level));
+    state_.more = state_.more | cn::select(has_siblings, level_bit, poly<std::uint32_t>(0u));
     if (tree_.shape.stack_entries > 0) {
       cn::poly_if_any(has_siblings, [&] {
         for (int i = width - 1; i > 0; --i) {
@@ -133,12 +134,12 @@ class Traveller {
         goes_down,
         [&] {
           enter(cn::low_word(entry[0]));
-          way_.level = way_.level + 1;
+          state_.level = state_.level + 1;
         },
-        [&] { way_.node = kNextOnStack; });
+        [&] { state_.node = kNextOnStack; });
   }
 
-  /// Leaves out the children that the trail has behind it.
+  /// Removes the children that the trail has passed.
   static void skip(const poly<std::int32_t>& left_behind, poly<std::uint64_t> (&entry)[width]) {
     for (int skipped = 0; skipped < width; ++skipped)
       cn::poly_if(left_behind > skipped, [&] {
@@ -147,34 +148,35 @@ class Traveller {
       });
   }
 
-  /// To the next sibling on the deepest level that has one: from the short stack, or by way of the root.
+  /// Continues with the next sibling on the deepest level that has one: from the short stack, or again from
+  /// the root.
   void pop() {
     cn::poly_if(
-        way_.more == poly<std::uint32_t>(0u), [&] { way_.node = kTraversalOver; },
+        state_.more == poly<std::uint32_t>(0u), [&] { state_.node = kTraversalOver; },
         [&] {
-          const poly<std::int32_t> level = cn::highest_bit(way_.more);
+          const poly<std::int32_t> level = cn::highest_bit(state_.more);
           const poly<std::uint64_t> one = cn::shift_left(poly<std::uint64_t>(1), level * kTrailBits);
-          way_.trail = (way_.trail & ((one << kTrailBits) - std::uint64_t{1})) + one;
+          state_.trail = (state_.trail & ((one << kTrailBits) - std::uint64_t{1})) + one;
           cn::poly_if(
-              way_.stack_count > 0, [&] { take_from_stack(level); },
+              state_.stack_count > 0, [&] { take_from_stack(level); },
               [&] {
-                way_.node = 0;
-                way_.level = 0;
-                way_.more = 0u;
+                state_.node = 0;
+                state_.level = 0;
+                state_.more = 0u;
               });
         });
   }
 
   void take_from_stack(const poly<std::int32_t>& level) {
     const poly<std::int32_t> wrap = tree_.shape.stack_entries - 1;
-    way_.stack_top = (way_.stack_top - 1) & wrap;
-    way_.stack_count = way_.stack_count - 1;
-    way_.level = level + 1;
-    const poly<std::uint64_t> entry = cn::load_at<std::uint64_t>(stack_address(way_.stack_top));
+    state_.stack_top = (state_.stack_top - 1) & wrap;
+    state_.stack_count = state_.stack_count - 1;
+    state_.level = level + 1;
+    const poly<std::uint64_t> entry = cn::load_at<std::uint64_t>(stack_address(state_.stack_top));
     const poly<std::uint32_t> reference = cn::low_word(entry);
     const mask is_last = (reference & poly<std::uint32_t>(PackedReference::kFlag)) != poly<std::uint32_t>(0u);
     const poly<std::uint32_t> level_bit = cn::low_word(cn::shift_left(poly<std::uint64_t>(1), level));
-    way_.more = way_.more - cn::select(is_last, level_bit, poly<std::uint32_t>(0u));
+    state_.more = state_.more - cn::select(is_last, level_bit, poly<std::uint32_t>(0u));
     cn::poly_if(visitor_.reaches(entry), [&] { enter(reference); });
   }
 
@@ -184,7 +186,7 @@ class Traveller {
   int stack_offset_;
   NodeVisitor<format, width> visitor_;
   poly<std::int32_t> treelet_;
-  Way& way_;
+  TraversalState& state_;
 };
 
 }  // namespace path_tracer

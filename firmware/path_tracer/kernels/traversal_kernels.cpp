@@ -12,7 +12,7 @@
 namespace path_tracer {
 namespace {
 
-/// A light's number, by its place among the lights.
+/// Returns a light's number, from its place among the lights.
 poly<std::int32_t> light_number(const poly<MonoAddress>& place, MonoAddress lights) {
   const poly<double> offset = cn::convert<double>(cn::low_word(place - lights));
   return cn::convert<std::int32_t>(offset * (1.0 / sizeof(LightRecord)) + 0.5);
@@ -31,7 +31,7 @@ void take_rays(const TakeRaysArguments& arguments) {
 }
 
 void enter(const EnterArguments& arguments) {
-  const PolyPointer<RayRecord> ray(arguments.ray.span().offset_bytes);
+  const PolyPointer<RayRecord> ray = arguments.ray.part(&QueuedRay::ray);
   const PolyPointer<TraversalRecord>& record = arguments.record;
   const poly<std::int32_t> light_face = ray.get(&RayRecord::light_face);
   const mask seeks_light = light_face != poly<std::int32_t>(kNoFace);
@@ -44,10 +44,10 @@ void enter(const EnterArguments& arguments) {
              arguments.ray.get(&QueuedRay::light) * kLightRun + arguments.first_light_run);
   record.set(&TraversalRecord::leaf_count,
              cn::select(seeks_light, poly<std::int32_t>(kLightRun), poly<std::int32_t>(0)));
-  const Nearest nothing;
-  record.set(&TraversalRecord::distance, nothing.distance);
-  record.set(&TraversalRecord::determinant, nothing.determinant);
-  record.set(&TraversalRecord::number, nothing.number);
+  const Nearest none;
+  record.set(&TraversalRecord::distance, none.distance);
+  record.set(&TraversalRecord::determinant, none.determinant);
+  record.set(&TraversalRecord::number, none.number);
   const poly<std::int32_t> zero = 0;
   record.set(&TraversalRecord::node, zero);
   record.set(&TraversalRecord::level, zero);
@@ -57,7 +57,7 @@ void enter(const EnterArguments& arguments) {
   arguments.treelet.write(poly<std::int32_t>(kNoTreelet));
 }
 
-/// The node that a ray is likely to ask for next: on the stack it may be culled yet.
+/// Returns the node that a ray is likely to need next; a node on the stack may still be culled.
 poly<std::int32_t> next_node(const LocateArguments& arguments, const poly<std::int32_t>& node) {
   const PolyPointer<TraversalRecord>& record = arguments.record;
   poly<std::int32_t> next(node.lanes());
@@ -104,9 +104,9 @@ void locate(const LocateArguments& arguments) {
 void finish(const FinishArguments& arguments) {
   const PolyPointer<TraversalRecord>& record = arguments.record;
   Nearest nearest;
-  nearest.distance.become(record.get(&TraversalRecord::distance));
-  nearest.determinant.become(record.get(&TraversalRecord::determinant));
-  nearest.number.become(record.get(&TraversalRecord::number));
+  nearest.distance.assign_all_lanes(record.get(&TraversalRecord::distance));
+  nearest.determinant.assign_all_lanes(record.get(&TraversalRecord::determinant));
+  nearest.number.assign_all_lanes(record.get(&TraversalRecord::number));
   write_hit(nearest, record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction),
             arguments.hit);
   const poly<MonoAddress> place = place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord));
@@ -135,7 +135,7 @@ void equal(const EqualArguments& arguments) {
   cn::keep(arguments.value.read() == poly<std::int32_t>(arguments.wanted), *arguments.equal);
 }
 
-/// The operand is fetched, brought into a register and stored.
+/// Each word is fetched as an operand, brought into a register and stored.
 void broadcast(const BroadcastArguments& arguments) {
   for (int i = 0; i < arguments.words; ++i) {
     cn::issue(cn::InstructionClass::mono, 2);

@@ -6,7 +6,7 @@
 #include "firmware/cn/simd/level.hpp"
 #include "firmware/path_tracer/records/traversal_record.hpp"
 
-/// The poly programs that take rays through the tree, as kernels.hpp has those of the other bins.
+/// The poly programs of tree traversals; kernels.hpp has the others.
 namespace path_tracer {
 
 using cn::LaneMask;
@@ -15,42 +15,42 @@ using cn::MonoAddress;
 using cn::PolyField;
 using cn::PolyPointer;
 
-/// What PEs hold of the tree.
+/// The part of the tree in the PEs' SRAM.
 struct TreeInSram {
   TreeShape shape;
-  int resident_offset = 0;  ///< of the resident nodes, in bytes
-  int treelet_offset = 0;   ///< of the treelet that was loaded
+  int resident_offset = 0;  ///< of the resident nodes
+  int treelet_offset = 0;   ///< of the loaded treelet
 };
 
-/// Behind the stages that make rays: packs them into the ray bin.
+/// After the stages that make rays: packs the rays into the ray queue.
 struct EnqueueArguments {
   PolyField<std::int32_t> number;  ///< ascending numbers of the lanes with a ray
   PolyPointer<QueuedRay> ray;
-  PolyField<MonoAddress> light_place;  ///< of the light that shadow rays are sent to
+  PolyField<MonoAddress> light_place;  ///< place of the light of each shadow ray
   MonoAddress lights = 0;
   int first_slot = 0;
   MonoAddress first_place = 0;  ///< for number 0
   PolyField<MonoAddress> place;
 };
 
-/// Which of the rays in the ray bin each idle PE takes.
+/// Gives each idle PE one of the next rays in the ray queue.
 struct TakeRaysArguments {
   PolyField<std::int32_t> number;  ///< ascending numbers of the idle PEs
-  std::int32_t rays = 0;           ///< that there are
+  std::int32_t rays = 0;           ///< number of rays left
   MonoAddress first_place = 0;
   PolyField<MonoAddress> place;
   LaneMask* takes = nullptr;
 };
 
-/// A ray begins at the root, a shadow ray at its light.
+/// Begins the traversal: a segment at the root, a shadow ray at its light.
 struct EnterArguments {
   PolyPointer<QueuedRay> ray;
   int first_light_run = 0;  ///< in the triangle array
   PolyPointer<TraversalRecord> record;
-  PolyField<std::int32_t> treelet;  ///< is set to none
+  PolyField<std::int32_t> treelet;  ///< set to kNoTreelet
 };
 
-/// Before the loads: where each ray's leaf and treelet lie.
+/// Before the loads: the places of each ray's leaf and treelet.
 struct LocateArguments {
   PolyPointer<TraversalRecord> record;
   TreeShape shape;
@@ -63,18 +63,18 @@ struct LocateArguments {
   LaneMask* needs_treelet = nullptr;
 };
 
-/// Tests the leaf, then goes on to the next leaf or to where the loaded nodes end.
+/// Tests the leaf, then traverses to the next leaf or to the end of the loaded nodes.
 struct TraverseArguments {
   PolyPointer<TraversalRecord> record;
   PolyPointer<TriangleRecord> leaf;
   PolyField<std::int32_t> treelet;
   TreeInSram tree;
   double reach = 0;                       ///< of the scene (triangle_record.hpp)
-  const LaneMask* loaded_leaf = nullptr;  ///< nothing when no PE has one
+  const LaneMask* loaded_leaf = nullptr;  ///< nullptr if no PE has a leaf
   LaneMask* alive = nullptr;
 };
 
-/// Of rays that are through: the hit, as the ray bin's own kernel leaves it, and where it goes.
+/// Writes the hit of each finished ray, and where it is saved.
 struct FinishArguments {
   PolyPointer<TraversalRecord> record;
   MonoAddress surfaces = 0;
@@ -86,9 +86,9 @@ struct FinishArguments {
   PolyField<MonoAddress> surface_place_to;
 };
 
-/// Where the rays that go on save to: behind the others in the ring of the traversal bin.
+/// Writes where the remaining rays are saved: behind the others in the ring of the traversal bin.
 struct AppendRaysArguments {
-  PolyField<std::int32_t> number;  ///< ascending numbers of the lanes that go on
+  PolyField<std::int32_t> number;  ///< ascending numbers of the lanes with a remaining ray
   MonoAddress bin = 0;
   int record_bytes = 0;
   std::int32_t tail = 0;      ///< place of number 0 in the ring
@@ -96,52 +96,52 @@ struct AppendRaysArguments {
   PolyField<MonoAddress> place;
 };
 
-/// Intersection bin: which slots hit something.
+/// Before the intersection stage: which slots' rays hit something.
 struct RecallArguments {
   PolyField<MonoAddress> surface_place;
   LaneMask* hit_something = nullptr;
 };
 
-/// Bits of the greatest of `numbers` numbers from 0 on.
+/// Returns the number of bits of the greatest of `numbers` numbers from 0 on.
 inline int bits_of(int numbers) {
   int bits = 0;
   while (((numbers - 1) >> bits) > 0) ++bits;
   return bits;
 }
 
-/// The least value that a PE holds, for the control unit (cn::keep_least).
+/// Gives the control unit the least value that a PE holds (cn::keep_least).
 struct LeastArguments {
   PolyField<std::int32_t> value;
   int bits = 0;
   std::int32_t* least = nullptr;
 };
 
-/// Which PEs hold a value.
+/// Tells which PEs hold a value.
 struct EqualArguments {
   PolyField<std::int32_t> value;
   std::int32_t wanted = 0;
   LaneMask* equal = nullptr;
 };
 
-/// A treelet into all PEs, as mono operands that they store.
+/// Stores a treelet in all PEs, word by word as mono operands.
 struct BroadcastArguments {
   const std::uint64_t* word = nullptr;
   int words = 0;
   int to_offset = 0;
 };
 
-/// Where rays of one treelet save to (TreeletQueues::Room).
+/// Writes where the rays of one treelet are saved (TreeletQueues::Room).
 struct AppendToBlocksArguments {
-  PolyField<std::int32_t> number;  ///< ascending numbers of the rays; not of a single one
+  PolyField<std::int32_t> number;  ///< ascending numbers of the rays, if there are several
   int rays = 0;
-  int room = 0;  ///< for so many of them
+  int room = 0;  ///< number of rays that go to `address`
   MonoAddress address = 0;
-  MonoAddress next_address = 0;  ///< for the others
+  MonoAddress next_address = 0;  ///< for the other rays
   int record_bytes = 0;
   PolyField<MonoAddress> place;
 };
 
-/// By NodeFormat, where NodeLayout::has_kernel().
+/// One kernel for each NodeFormat, where NodeLayout::has_kernel().
 using TraverseKernels = std::array<cn::Kernel<TraverseArguments>, kNodeFormats>;
 
 struct TraversalKernels {

@@ -4,11 +4,11 @@
 #include "firmware/path_tracer/kernels/traversal.hpp"
 #include "firmware/path_tracer/kernels/traverse_kernels.hpp"
 
-/// What traverse_2.cpp, traverse_4.cpp and traverse_8.cpp build, each once for each x86-64 level: apart from
-/// each other because each takes a minute or two.
+/// The code of traverse_2.cpp, traverse_4.cpp and traverse_8.cpp. They are separate files because each takes
+/// a minute or two to compile for each x86-64 level.
 namespace path_tracer {
 
-/// A leaf that each PE has its own of.
+/// One leaf per PE.
 struct PolyTriangles {
   PolyPointer<TriangleRecord> first;
   int count;
@@ -22,23 +22,23 @@ struct PolyTriangles {
   mask where_there(int i, const mask& lanes) const { return lanes & (there > i); }
 };
 
-/// Tests the leaf. A shadow ray is over when something is nearer than its light; one that missed its light
-/// finds out what else it hits, as the light's face may have other triangles.
+/// Tests the leaf. A shadow ray is finished when something is nearer than its light. A shadow ray that missed
+/// its light finds what else it hits, because the light's face may have other triangles.
 inline void test_leaf(const TraverseArguments& arguments, const RayOperands& ray, NearestFace& nearest,
-                      Way& way) {
+                      TraversalState& state) {
   const poly<std::int32_t> light_face = arguments.record.get(&TraversalRecord::light_face);
-  nearest.face.become(light_face);
+  nearest.face.assign_all_lanes(light_face);
   const poly<std::int32_t> there =
-      cn::select(cn::recall(*arguments.loaded_leaf), way.leaf_count, poly<std::int32_t>(0));
+      cn::select(cn::recall(*arguments.loaded_leaf), state.leaf_count, poly<std::int32_t>(0));
   search(ray, arguments.reach, PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), there},
          nearest);
   cn::poly_if(there > 0, [&] {
-    const mask nothing = nearest.number < 0;
+    const mask is_missed = nearest.number < 0;
     arguments.record.set(&TraversalRecord::light_face,
-                         cn::select(nothing, poly<std::int32_t>(kNoFace), light_face));
+                         cn::select(is_missed, poly<std::int32_t>(kNoFace), light_face));
     const mask occluded = (light_face != poly<std::int32_t>(kNoFace)) & (nearest.face != light_face);
-    way.node = cn::select(occluded & !nothing, poly<std::int32_t>(kTraversalOver), way.node);
-    way.leaf_count = 0;
+    state.node = cn::select(occluded & !is_missed, poly<std::int32_t>(kTraversalOver), state.node);
+    state.leaf_count = 0;
   });
   arguments.record.set(&TraversalRecord::distance, nearest.distance);
   arguments.record.set(&TraversalRecord::determinant, nearest.determinant);
@@ -49,17 +49,17 @@ template <NodeFormat format, int width>
 void traverse(const TraverseArguments& arguments) {
   const RayOperands ray = ray_of(arguments.record);
   NearestFace nearest;
-  nearest.distance.become(arguments.record.get(&TraversalRecord::distance));
-  nearest.determinant.become(arguments.record.get(&TraversalRecord::determinant));
-  nearest.number.become(arguments.record.get(&TraversalRecord::number));
-  Way way(arguments.record);
-  if (arguments.loaded_leaf != nullptr) test_leaf(arguments, ray, nearest, way);
+  nearest.distance.assign_all_lanes(arguments.record.get(&TraversalRecord::distance));
+  nearest.determinant.assign_all_lanes(arguments.record.get(&TraversalRecord::determinant));
+  nearest.number.assign_all_lanes(arguments.record.get(&TraversalRecord::number));
+  TraversalState state(arguments.record);
+  if (arguments.loaded_leaf != nullptr) test_leaf(arguments, ray, nearest, state);
   const NodeRay<format> node_ray(ray.origin, ray.direction, to_node_unit(format, arguments.reach),
                                  latest_entry(nearest.distance / cn::abs(nearest.determinant)));
-  Traveller<format, width>(arguments.tree, arguments.record, node_ray, arguments.treelet.read(), way)
-      .travel();
-  way.write(arguments.record);
-  cn::keep(!way.is_over(), *arguments.alive);
+  TreeWalker<format, width>(arguments.tree, arguments.record, node_ray, arguments.treelet.read(), state)
+      .walk();
+  state.write(arguments.record);
+  cn::keep(!state.is_over(), *arguments.alive);
 }
 
 template <NodeFormat format, int width>

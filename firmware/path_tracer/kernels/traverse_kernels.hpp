@@ -4,8 +4,8 @@
 
 namespace path_tracer {
 
-/// The poly program that tests leaves and visits nodes, for nodes of 2, 4 or 8 children; TRAVERSE_KERNELS is
-/// the level's name for the table.
+/// The poly programs that test leaves and visit nodes of 2, 4 or 8 children. TRAVERSE_KERNELS is the level's
+/// name for the table.
 template <int width>
 const TraverseKernels& TRAVERSE_KERNELS();
 

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/program_config.hpp"
 
 /// The options of the firmware. Command line, sweeps, golden grids, statistics, `csx600 params` and the
 /// documents take name, range, default and meaning from this table and from nowhere else.

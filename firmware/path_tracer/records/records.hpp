@@ -4,15 +4,14 @@
 
 #include "firmware/cn/language/vec3.hpp"
 
-/// What lies in mono memory, record by record. Poly buffers hold the same layouts, so a transfer is a plain
-/// copy.
+/// Records in mono memory. Poly buffers have the same layouts, so a transfer is a plain copy.
 namespace path_tracer {
 
 using cn::vec3;
 
 inline constexpr std::int32_t kNoFace = -1;
 
-/// How the camera turns a film position into a direction: corner + right * x + down * y, x and y in pixels.
+/// The camera turns a film position into a direction: corner + right * x + down * y, with x and y in pixels.
 struct CameraRecord {
   vec3<double> position{};
   vec3<double> corner{};
@@ -22,19 +21,19 @@ struct CameraRecord {
   std::int32_t height = 0;
 };
 
-/// For intersection (triangle.hpp); made by triangle_record(). Triangles that touch in one plane share a
-/// face: a ray that leaves a face ignores it, so no distance threshold is needed to keep a surface from
-/// shadowing itself.
+/// A triangle for intersection (triangle.hpp); made by triangle_record(). Triangles that touch in one plane
+/// share a face. A ray that leaves a face ignores it, so no distance threshold is needed to keep a surface
+/// from shadowing itself.
 struct TriangleRecord {
   vec3<double> vertex{};
-  vec3<double> edge1{};  ///< the edges and `back` times one power of two, see triangle_record()
+  vec3<double> edge1{};  ///< edges and `back` are scaled by one power of two, see triangle_record()
   vec3<double> edge2{};
   vec3<double> back{};  ///< edge2 x edge1, away from the front
   std::int32_t face = kNoFace;
-  std::int32_t number = 0;  ///< in the scene; of hits at the same distance the lowest counts
+  std::int32_t number = 0;  ///< in the scene; among hits at the same distance the lowest number wins
 };
 
-/// For shading, one a triangle: "around 10 double precision floats" (paper, section 4.1).
+/// A triangle for shading: "around 10 double precision floats" (paper, section 4.1).
 struct SurfaceRecord {
   vec3<double> normal{};  ///< unit length, towards the front
   vec3<double> reflectance{};
@@ -59,52 +58,52 @@ struct LightRecord {
   std::int32_t shape = static_cast<std::int32_t>(LightShape::triangle);
 };
 
-/// Ray bin. With direct lighting a slot's ray is the next segment of its path or the shadow ray of the last
-/// one.
+/// Record of the ray bin. With direct lighting, a slot's ray is the next segment of its path or the shadow
+/// ray of the last segment.
 struct RayRecord {
   vec3<double> origin{};
   vec3<double> direction{};
   std::int32_t left_face = kNoFace;   ///< the face that the ray leaves
-  std::int32_t light_face = kNoFace;  ///< of a shadow ray: the face that it looks for
+  std::int32_t light_face = kNoFace;  ///< a shadow ray's: the face of its light
 };
 
-/// Ray bin of programs that use a tree: rays stand there packed, whatever slot they belong to.
+/// Record of the ray queue, where rays stand packed, whatever slot they belong to.
 struct QueuedRay {
   RayRecord ray{};
   std::int32_t slot = 0;
-  std::int32_t light = 0;  ///< of a shadow ray: the number of the light that it was sent to
+  std::int32_t light = 0;  ///< a shadow ray's: the number of its light
 };
 
-/// Intersection bin.
+/// Record of the intersection bin.
 struct HitRecord {
   vec3<double> position{};
-  std::int32_t hit = 0;    ///< 1 when something was hit
-  std::int32_t front = 0;  ///< 1 when its front was
+  std::int32_t hit = 0;    ///< 1 if the ray hit a triangle
+  std::int32_t front = 0;  ///< 1 if it hit the front
 };
 
-/// Intersection bin to path bin: the vertex and the ray that goes on from it.
+/// From the intersection stage to the path stage: the vertex and the next segment.
 struct ScatterRecord {
   vec3<double> position{};
   vec3<double> direction{};
-  vec3<double> radiance{};  ///< that the vertex sends towards the path's start, without direct light
-  vec3<double> weight{};    ///< factor for all that comes from behind the vertex
+  vec3<double> radiance{};  ///< from the vertex towards the path's start, without direct light
+  vec3<double> weight{};    ///< factor for the radiance from the rest of the path
   std::int32_t face = kNoFace;
   std::int32_t ended = 0;
 };
 
-/// Kept while a shadow ray is under way: what becomes of the light that it finds.
+/// Kept while a shadow ray is under way: what its light contributes.
 struct LightingRecord {
   vec3<double> weight{};              ///< factor for the radiance of the light's face
   std::int32_t light_face = kNoFace;  ///< what the shadow ray must hit
   std::int32_t unused = 0;
 };
 
-/// Intersection bin to path bin: what a shadow ray brought.
+/// From the intersection stage to the path stage: the direct light that a shadow ray found.
 struct DirectLightRecord {
   vec3<double> radiance{};
 };
 
-/// Path bin, one a slot: which path it is and how far.
+/// Record of the path bin: the path in a slot, and how far it is.
 struct PathRecord {
   std::int32_t pixel = 0;
   std::int32_t sample = 0;
@@ -112,23 +111,23 @@ struct PathRecord {
   std::int32_t vertices = 0;  ///< in the slot
   std::int32_t folded = 0;    ///< 1 when earlier vertices were folded into a FoldRecord
   std::int32_t unused = 0;
-  double light_u = 0;  ///< where on its light the shadow ray of the next vertex will go
+  double light_u = 0;  ///< point on the light for the shadow ray of the next vertex
   double light_v = 0;
 };
 
-/// Path bin, slot_vertices of them a slot.
+/// Vertex of a path; slot_vertices of them for each slot.
 struct VertexRecord {
   vec3<double> radiance{};
   vec3<double> weight{};
 };
 
-/// Vertices of a path that did not fit its slot, folded.
+/// The folded vertices of a path that did not fit its slot.
 struct FoldRecord {
   vec3<double> radiance{};
   vec3<double> throughput{};
 };
 
-/// A path whose vertices in the slot wait for their radiance: it ended, or its slot is full.
+/// A path whose vertices wait for their radiance, because the path ended or its slot is full.
 struct FinishedRecord {
   std::int32_t slot = 0;
   std::int32_t vertices = 0;
@@ -138,14 +137,14 @@ struct FinishedRecord {
   std::int32_t ended = 0;
 };
 
-/// The result of a path, for the host. A pixel of -1 is no result.
+/// The result of a path, for the host. A pixel of -1 marks no result.
 struct RadianceRecord {
   vec3<double> radiance{};
   std::int32_t pixel = -1;
   std::int32_t sample = 0;
 };
 
-/// What the firmware tells the host before it signals that a half of the results is ready.
+/// Header of a half of the results, written before the firmware signals that the half is ready.
 struct ResultsHeader {
   std::int32_t records = 0;
   std::int32_t unused = 0;

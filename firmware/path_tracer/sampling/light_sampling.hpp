@@ -2,10 +2,10 @@
 
 #include "firmware/path_tracer/sampling/sampling.hpp"
 
-/// Choosing a point of a light as seen from a point that it may light.
+/// Sampling a point on a light, as seen from a point that it may light.
 namespace path_tracer {
 
-/// The fields of a LightRecord that say where it is.
+/// The geometry of a LightRecord.
 struct LightSurface {
   Point3 vertex;
   Direction3 edge1;
@@ -15,13 +15,13 @@ struct LightSurface {
 
 struct LightSample {
   Direction3 to_light;  ///< from the lit point to the point of the light
-  /// Cosine at the lit point / (density of to_light in solid angle * area of the light); times the light's
-  /// emission_over_pdf and reflectance / pi this is what the surface reflects. Not positive where the light
+  /// Cosine at the lit point / (density of to_light in solid angle * area of the light). Times the light's
+  /// emission and inverse_pdf, and reflectance / pi, it is the reflected radiance. Not positive if the light
   /// or the surface faces away.
   poly<double> weight;
 };
 
-/// A density over the unit square that is linear in u and in v, by its values at the corners up to a factor.
+/// A density over the unit square, linear in u and in v, given by its values at the corners up to a factor.
 struct Bilinear {
   poly<double> at_00;
   poly<double> at_10;  ///< u = 1, v = 0
@@ -33,8 +33,8 @@ inline poly<double> lerp(const poly<double>& from, const poly<double>& to, const
   return from + (to - from) * share;
 }
 
-/// A number in [0, 1] with density in proportion to lerp(at_0, at_1, x), both positive: the integral's
-/// quadratic solved for x, without cancellation.
+/// Samples a number in [0, 1] with density proportional to lerp(at_0, at_1, x), both positive: solves the
+/// integral's quadratic for x without cancellation.
 inline poly<double> sample_linear(const poly<double>& u, const poly<double>& at_0, const poly<double>& at_1) {
   const poly<double> root = cn::sqrt(lerp(at_0 * at_0, at_1 * at_1, u));
   return cn::min(u * (at_0 + at_1) / (at_0 + root), poly<double>(1.0));
@@ -59,17 +59,18 @@ inline SquareSample sample_bilinear(const Bilinear& f, const poly<double>& u, co
   return {x, y, (at_v0 + at_v1) * 0.25 / lerp(at_u0, at_u1, x)};
 }
 
-/// A cosine as a corner value: positive, so that no direction above the horizon has density 0.
+/// Turns a cosine into a corner value: positive, so that no direction above the horizon has density 0.
 inline constexpr double kLeastCornerCosine = 0.01;
 inline poly<double> corner_value(const poly<double>& cosine) {
   return cn::max(cosine, poly<double>(kLeastCornerCosine));
 }
-/// The same for a cosine that is height / distance, times the distance.
+/// corner_value() of height / distance, times the distance.
 inline poly<double> corner_height(const poly<double>& height, const poly<double>& distance) {
   return cn::max(height, distance * kLeastCornerCosine);
 }
 
-/// The point that to_light reaches, uniform in area; both cosines are scaled by the distance.
+/// Weighs the point that to_light reaches, sampled uniformly in area. Both cosines are scaled by the
+/// distance.
 inline LightSample weigh_by_area(const Direction3& to_light, const Direction3& light_normal,
                                  const Direction3& normal) {
   const poly<double> distance_squared = dot(to_light, to_light);
@@ -80,27 +81,27 @@ inline LightSample weigh_by_area(const Direction3& to_light, const Direction3& l
   return {to_light, cn::select(faces, geometry, poly<double>(0.0))};
 }
 
-/// A triangle, uniform in area.
+/// Samples a triangle uniformly in area.
 inline LightSample sample_light_area(const LightSurface& light, const Point3& position,
                                      const Direction3& normal, const poly<double>& u, const poly<double>& v) {
   const Point3 on_light = sample_triangle(light.vertex, light.edge1, light.edge2, u, v);
   return weigh_by_area(on_light - position, light.normal, normal);
 }
 
-/// Below this solid angle rounding would show, and a point uniform in area is as good: the light is small for
-/// its distance, or seen edge on.
+/// Smallest solid angle to sample. Below it rounding would show, and a point uniform in area is as good: the
+/// light is small for its distance, or seen edge on.
 inline constexpr double kLeastSolidAngle = 1e-6;
 
-/// Keeps quotients and roots of what rounding may take to zero or below it finite.
+/// Keeps quotients and roots finite whose argument rounding may take to zero or below.
 inline poly<double> at_least_tiny(const poly<double>& value) {
   return cn::max(value, poly<double>(1e-30));
 }
 
-/// What a difference of squares keeps at least of their sum, for the same reason and at any scale.
+/// Least share of the sum of squares that their difference keeps, for the same reason and at any scale.
 inline constexpr double kLeastShare = 1e-30;
 inline constexpr double kNotZero = 1e-280;
 
-/// A direction in the solid angle that a light takes.
+/// A direction in the solid angle of a light.
 struct SolidAngleSample {
   Direction3 to_light;
   poly<double> solid_angle;
@@ -114,12 +115,12 @@ inline LightSample weigh_by_solid_angle(const SolidAngleSample& sample, const Di
           dot(sample.to_light, normal) * sample.solid_angle * sample.inverse_pdf / (distance * area)};
 }
 
-/// A rectangle from a point in front of it. In coordinates along its edges its corners are (x0|x1, y0|y1,
-/// -z), r are their distances.
+/// A rectangle as seen from a point in front of it. In coordinates along its edges, its corners are (x0|x1,
+/// y0|y1, -z); r are their distances.
 ///
-/// The angles of the complex numbers z r + i x y are the arcsines that take the place of Urena's arccosines,
-/// and products of such numbers add angles. So one arctangent does for four arccosines, whose arguments
-/// rounding could not be trusted to keep within [-1, 1].
+/// The angles of the complex numbers z r + i x y are the arcsines that replace Urena's arccosines, and
+/// products of such numbers add angles. So one arctangent replaces four arccosines, whose arguments rounding
+/// may take out of [-1, 1].
 struct RectangleView {
   poly<double> inverse_length1, inverse_length2;
   poly<double> area;
@@ -133,37 +134,37 @@ inline RectangleView view_rectangle(const LightSurface& light, const Direction3&
   RectangleView view;
   const poly<double> length1 = cn::sqrt(dot(light.edge1, light.edge1));
   const poly<double> length2 = cn::sqrt(dot(light.edge2, light.edge2));
-  view.area.become(length1 * length2);
+  view.area.assign_all_lanes(length1 * length2);
   const poly<double> inverse_area = 1.0 / view.area;
-  view.inverse_length1.become(length2 * inverse_area);
-  view.inverse_length2.become(length1 * inverse_area);
-  view.x0.become(dot(to_vertex, light.edge1) * view.inverse_length1);
-  view.y0.become(dot(to_vertex, light.edge2) * view.inverse_length2);
-  view.x1.become(view.x0 + length1);
-  view.y1.become(view.y0 + length2);
-  view.z.become(-dot(to_vertex, light.normal));
+  view.inverse_length1.assign_all_lanes(length2 * inverse_area);
+  view.inverse_length2.assign_all_lanes(length1 * inverse_area);
+  view.x0.assign_all_lanes(dot(to_vertex, light.edge1) * view.inverse_length1);
+  view.y0.assign_all_lanes(dot(to_vertex, light.edge2) * view.inverse_length2);
+  view.x1.assign_all_lanes(view.x0 + length1);
+  view.y1.assign_all_lanes(view.y0 + length2);
+  view.z.assign_all_lanes(-dot(to_vertex, light.normal));
   const poly<double> zz = view.z * view.z;
   const poly<double> x0_squared = view.x0 * view.x0;
   const poly<double> x1_squared = view.x1 * view.x1;
   const poly<double> y0z_squared = view.y0 * view.y0 + zz;
   const poly<double> y1z_squared = view.y1 * view.y1 + zz;
-  view.r00.become(cn::sqrt(x0_squared + y0z_squared));
-  view.r10.become(cn::sqrt(x1_squared + y0z_squared));
-  view.r01.become(cn::sqrt(x0_squared + y1z_squared));
-  view.r11.become(cn::sqrt(x1_squared + y1z_squared));
+  view.r00.assign_all_lanes(cn::sqrt(x0_squared + y0z_squared));
+  view.r10.assign_all_lanes(cn::sqrt(x1_squared + y0z_squared));
+  view.r01.assign_all_lanes(cn::sqrt(x0_squared + y1z_squared));
+  view.r11.assign_all_lanes(cn::sqrt(x1_squared + y1z_squared));
   const poly<double> yy = view.y1 * view.y0;
-  view.left_real.become(zz * view.r01 * view.r00 + x0_squared * yy);
-  view.left_imaginary.become(view.z * view.x0 * (view.y1 * view.r00 - view.y0 * view.r01));
+  view.left_real.assign_all_lanes(zz * view.r01 * view.r00 + x0_squared * yy);
+  view.left_imaginary.assign_all_lanes(view.z * view.x0 * (view.y1 * view.r00 - view.y0 * view.r01));
   const poly<double> right_real = zz * view.r11 * view.r10 + x1_squared * yy;
   const poly<double> right_imaginary = view.z * view.x1 * (view.y1 * view.r10 - view.y0 * view.r11);
   const poly<double> turn = cn::atan2(right_imaginary * view.left_real - right_real * view.left_imaginary,
                                       right_real * view.left_real + right_imaginary * view.left_imaginary);
-  view.solid_angle.become(cn::select(turn < 0.0, turn + 2.0 * kPi, turn));  // at most 2 pi
+  view.solid_angle.assign_all_lanes(cn::select(turn < 0.0, turn + 2.0 * kPi, turn));  // at most 2 pi
   return view;
 }
 
-/// The x that has the share u of the solid angle to its left. Urena's quotients, all over the same
-/// denominators and so without them.
+/// Returns the x with the share u of the solid angle to its left. Urena's quotients have a common
+/// denominator, which cancels.
 inline poly<double> rectangle_column(const RectangleView& view, const poly<double>& u) {
   const poly<double> zz = view.z * view.z;
   const poly<double> y0z_squared = view.y0 * view.y0 + zz;
@@ -178,12 +179,12 @@ inline poly<double> rectangle_column(const RectangleView& view, const poly<doubl
   return cn::min(cn::max(x, view.x0), view.x1);
 }
 
-/// Within a column the sine of the elevation is uniform.
+/// Samples the height within a column, where the sine of the elevation is uniform.
 inline poly<double> rectangle_row(const RectangleView& view, const poly<double>& x, const poly<double>& v) {
   const poly<double> column_squared = x * x + view.z * view.z;
   const poly<double> low_size = cn::sqrt(column_squared + view.y0 * view.y0);
   const poly<double> high_size = cn::sqrt(column_squared + view.y1 * view.y1);
-  // The sine and its 1, both times the same size.
+  // The sine and the 1 it is compared with, both scaled by the same size.
   const poly<double> one = low_size * high_size;
   const poly<double> sine = lerp(view.y0 * high_size, view.y1 * low_size, v);
   const poly<double> cosine_squared = cn::max((one - sine) * (one + sine), one * one * kLeastShare);
@@ -191,15 +192,15 @@ inline poly<double> rectangle_row(const RectangleView& view, const poly<double>&
   return cn::min(cn::max(y, view.y0), view.y1);
 }
 
-/// Uniform in solid angle (Urena, Fajardo, King, "An Area-Preserving Parametrization for Spherical
-/// Rectangles", CGF 32(4), 2013) under a warp to the cosine.
+/// Samples uniformly in solid angle (Urena, Fajardo, King, "An Area-Preserving Parametrization for Spherical
+/// Rectangles", CGF 32(4), 2013), warped to the cosine.
 inline SolidAngleSample sample_rectangle(const LightSurface& light, const RectangleView& view,
                                          const Direction3& to_vertex, const Direction3& normal,
                                          const poly<double>& u, const poly<double>& v) {
   const poly<double> height_00 = dot(to_vertex, normal);
   const poly<double> along1 = dot(light.edge1, normal);
   const poly<double> along2 = dot(light.edge2, normal);
-  // Each cosine is height / r, and the warp asks for their proportions only.
+  // Each cosine is height / r; the warp needs only their proportions.
   const poly<double> r00_r11 = view.r00 * view.r11;
   const poly<double> r10_r01 = view.r10 * view.r01;
   const SquareSample warped =
@@ -215,7 +216,7 @@ inline SolidAngleSample sample_rectangle(const LightSurface& light, const Rectan
           view.solid_angle, warped.inverse_pdf};
 }
 
-/// Unit vectors to a triangle's corners, turning left as seen from its front.
+/// Unit vectors to a triangle's corners, counterclockwise as seen from its front.
 struct TriangleView {
   Direction3 a, b, c;
   poly<double> volume;  ///< a . (b x c), positive in front of it
@@ -235,15 +236,15 @@ inline TriangleView view_triangle(const LightSurface& light, const Direction3& t
   return {a, b, c, volume, 2.0 * cn::atan2(volume, 1.0 + dot(a, b) + dot(b, c) + dot(c, a))};
 }
 
-/// The point at the given cosine from `from` on the great circle towards `to`.
+/// Returns the point on the great circle from `from` towards `to` at the given cosine from `from`.
 inline Direction3 on_arc(const Direction3& from, const Direction3& to, const poly<double>& cosine) {
   const Direction3 across = unit(to - from * dot(from, to));
   return from * cosine + across * cn::sqrt(cn::max(1.0 - cosine * cosine, poly<double>(0.0)));
 }
 
-/// Uniform in solid angle (Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995) under a warp to
-/// the cosine: c moves along its side until the triangle has the share u of its solid angle, then v chooses
-/// between b and there. The angle at `a` enters by its sine and cosine only.
+/// Samples uniformly in solid angle (Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995),
+/// warped to the cosine: c moves along its side until the triangle has the share u of its solid angle, then v
+/// chooses between b and the moved point. Only the sine and the cosine of the angle at `a` are needed.
 inline SolidAngleSample sample_spherical_triangle(const TriangleView& view, const Direction3& light_normal,
                                                   const poly<double>& z, const Direction3& normal,
                                                   const poly<double>& u, const poly<double>& v) {
@@ -270,7 +271,7 @@ inline SolidAngleSample sample_spherical_triangle(const TriangleView& view, cons
   return {direction * distance, view.solid_angle, warped.inverse_pdf};
 }
 
-/// Uniform in solid angle but for the warp to the cosine; uniform in area where the solid angle is too small.
+/// Samples uniformly in solid angle, warped to the cosine; uniformly in area if the solid angle is too small.
 inline LightSample sample_light_solid_angle(const LightSurface& light, const poly<std::int32_t>& shape,
                                             const Point3& position, const Direction3& normal,
                                             const poly<double>& u, const poly<double>& v) {

@@ -6,7 +6,7 @@
 
 namespace path_tracer {
 
-/// What a group of four random numbers is for; part of the counter, so that uses never share numbers.
+/// The use of a group of four random numbers. It is part of the counter, so that uses never share numbers.
 enum class Purpose : std::uint32_t { camera, scatter, light };
 
 /// Four uniform numbers in (0, 1).
@@ -21,7 +21,7 @@ struct Words4 {
 
 inline constexpr int kPhiloxRounds = 10;
 
-/// Philox4x32 (Salmon, Moraes, Dror, Shaw, SC 2011): `counter` under a key.
+/// Philox4x32 (Salmon, Moraes, Dror, Shaw, SC 2011): encrypts `counter` with a key.
 template <int rounds>
 inline Words4 philox(std::uint64_t key, const Words4& counter) {
   using Word = cn::poly<std::uint32_t>;
@@ -41,24 +41,24 @@ inline Words4 philox(std::uint64_t key, const Words4& counter) {
     const cn::WideProduct product1 = cn::multiply_wide(word2, kMultiplier1);
     const Word next0 = product1.high ^ word1 ^ Word(key0);
     const Word next2 = product0.high ^ word3 ^ Word(key1);
-    word0.become(next0);
-    word1.become(product1.low);
-    word2.become(next2);
-    word3.become(product0.low);
+    word0.assign_all_lanes(next0);
+    word1.assign_all_lanes(product1.low);
+    word2.assign_all_lanes(next2);
+    word3.assign_all_lanes(product0.low);
     key0 += kWeyl0;
     key1 += kWeyl1;
   }
   return {{word0, word1, word2, word3}};
 }
 
-/// The middle of each of 2^32 equal steps: never 0, never 1.
+/// Returns the middle of one of 2^32 equal steps: never 0, never 1.
 inline cn::poly<double> uniform_of(const cn::poly<std::uint32_t>& word) {
   constexpr double kStep = 1.0 / 4294967296.0;
   return (cn::convert<double>(word) + 0.5) * kStep;
 }
 
-/// Random numbers as a function of what they are for: the same pixel, sample, depth and purpose give the same
-/// numbers wherever and whenever a path is traced.
+/// Random numbers as a function of their use: the same pixel, sample, depth and purpose give the same numbers
+/// wherever and whenever a path is traced.
 inline Uniform4 uniform4(std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
                          const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
                          Purpose purpose) {

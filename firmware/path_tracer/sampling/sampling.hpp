@@ -12,7 +12,7 @@ using Point3 = vec3<poly<double>>;
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// A vector to unit length. One that has none to speak of becomes `fallback`.
+/// Scales a vector to unit length. A vector whose length is nearly 0 becomes `fallback`.
 inline Direction3 normalize(const Direction3& v, const Direction3& fallback) {
   constexpr double kTooShort = 1e-30;
   const poly<double> length_squared = dot(v, v);
@@ -21,8 +21,8 @@ inline Direction3 normalize(const Direction3& v, const Direction3& fallback) {
   return cn::select(usable, v * scale, fallback);
 }
 
-/// Directions with density cos / pi around a unit normal: the normal plus a point of the unit sphere, which
-/// needs no tangents.
+/// Samples directions with density cos / pi around a unit normal: the normal plus a point of the unit sphere,
+/// which needs no tangents.
 inline Direction3 sample_cosine(const Direction3& normal, const poly<double>& u, const poly<double>& v) {
   const poly<double> z = 1.0 - 2.0 * u;
   const poly<double> radius = cn::sqrt(1.0 - z * z);
@@ -31,7 +31,7 @@ inline Direction3 sample_cosine(const Direction3& normal, const poly<double>& u,
   return normalize(normal + on_sphere, normal);
 }
 
-/// A point of a triangle, uniform in area: the parallelogram's outer half is turned back in.
+/// Samples a triangle uniformly in area: the outer half of the parallelogram is folded back.
 inline Point3 sample_triangle(const Point3& vertex, const Direction3& edge1, const Direction3& edge2,
                               const poly<double>& u, const poly<double>& v) {
   const mask outside = u + v > 1.0;
@@ -40,7 +40,8 @@ inline Point3 sample_triangle(const Point3& vertex, const Direction3& edge1, con
   return vertex + edge1 * a + edge2 * b;
 }
 
-/// The first entry of a cumulative distribution that is above u, by asking the mono table entry by entry.
+/// Returns the first entry of a cumulative distribution that is above u. The control unit goes through the
+/// mono table entry by entry.
 inline poly<std::int32_t> sample_cdf(const double* cdf, int count, const poly<double>& u) {
   poly<std::int32_t> chosen = 0;
   for (int i = 0; i + 1 < count; ++i) {
@@ -52,10 +53,10 @@ inline poly<std::int32_t> sample_cdf(const double* cdf, int count, const poly<do
 
 struct CdfEntry {
   poly<std::int32_t> entry;
-  poly<double> rest;  ///< where u lies within the entry, in [0, 1): uniform again
+  poly<double> rest;  ///< position of u within the entry, in [0, 1): uniform again
 };
 
-/// sample_cdf() that gives back the part of u it did not use. Rounding may let the last entry end below 1.
+/// sample_cdf() that also returns the unused part of u. Rounding may let the last entry end below 1.
 inline CdfEntry sample_cdf_stretched(const double* cdf, int count, const poly<double>& u) {
   if (count == 1) return {0, u};
   poly<std::int32_t> chosen = 0;
@@ -71,25 +72,6 @@ inline CdfEntry sample_cdf_stretched(const double* cdf, int count, const poly<do
   }
   constexpr double kBelowOne = 1.0 - 0x1p-53;
   return {chosen, cn::min((u - low) / (high - low), poly<double>(kBelowOne))};
-}
-
-struct CameraRay {
-  Point3 origin;
-  Direction3 direction;
-};
-
-/// Through point (u, v) of the pixel: uniform numbers make the film's filter a box one pixel wide.
-inline CameraRay sample_camera(const CameraRecord& camera, const poly<std::int32_t>& pixel,
-                               const poly<double>& u, const poly<double>& v) {
-  // PEs cannot divide integers; half a pixel off the quotient's integers, the truncated product is exact.
-  const poly<double> row_position = (cn::convert<double>(pixel) + 0.5) * (1.0 / camera.width);
-  const poly<std::int32_t> row = cn::convert<std::int32_t>(row_position);
-  const poly<std::int32_t> column = pixel - row * camera.width;
-  const poly<double> x = cn::convert<double>(column) + u;
-  const poly<double> y = cn::convert<double>(row) + v;
-  const Direction3 through = camera.right * x + camera.down * y + camera.corner;
-  const Point3 origin{camera.position.x, camera.position.y, camera.position.z};
-  return {origin, normalize(through, through)};
 }
 
 }  // namespace path_tracer

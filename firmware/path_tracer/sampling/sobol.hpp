@@ -11,28 +11,29 @@ namespace path_tracer {
 
 using Word = cn::poly<std::uint32_t>;
 
-/// Rounds for words that scramble; the fewest that pass all tests of randomness (Salmon et al., SC 2011).
+/// Rounds of Philox for scrambling words: the fewest that pass all tests of randomness (Salmon et al., SC
+/// 2011).
 inline constexpr int kScramblingRounds = 7;
 
-/// Owen's nested scrambling of a number whose bits stand in opposite order: each bit is flipped as the bits
-/// below it say (Laine and Karras, EGSR 2011; constants of Burley 2020, section 2).
+/// Owen's nested scrambling of a number with reversed bits: each bit is flipped depending on the bits below
+/// it (Laine and Karras, EGSR 2011; constants of Burley 2020, section 2).
 inline Word scramble_reversed(const Word& reversed, const Word& seed) {
   Word x = reversed + seed;
   for (const std::uint32_t even : {0x6c50b47cu, 0xb82f1e52u, 0xc7afe638u, 0x8d22f6e6u}) {
     const Word next = x ^ cn::multiply_wide(x, even).low;
-    x.become(next);
+    x.assign_all_lanes(next);
   }
   return x;
 }
 
-/// Sobol's second coordinate of a point number, its bits in opposite order. The generator matrix is Pascal's
+/// Returns Sobol's second coordinate of a point number, with reversed bits. The generator matrix is Pascal's
 /// triangle modulo 2: bit j is the sum of the bits whose places contain j (Lucas), and such sums over
 /// supersets take one step for each bit of a place.
 inline Word sobol_second_reversed(const Word& number) {
   Word x = number;
   const auto add_supersets = [&x](std::uint32_t places, int distance) {
     const Word next = x ^ ((x & Word(places)) >> distance);
-    x.become(next);
+    x.assign_all_lanes(next);
   };
   add_supersets(0xaaaaaaaau, 1);
   add_supersets(0xccccccccu, 2);
@@ -42,9 +43,9 @@ inline Word sobol_second_reversed(const Word& number) {
   return x;
 }
 
-/// What one point of one pixel's sequences is made from.
+/// The state that one point of one pixel's sequences is made from.
 struct SobolPoint {
-  Word reversed_sample;  ///< the sample's number, its bits in opposite order
+  Word reversed_sample;  ///< the sample's number with reversed bits
   Words4 scramblings;
 };
 
@@ -62,7 +63,7 @@ struct UniformPair {
   cn::poly<double> v;
 };
 
-/// Two numbers in (0, 1) that are stratified together over the samples of a pixel.
+/// Returns two numbers in (0, 1) that are stratified together over the samples of a pixel.
 inline UniformPair sobol_pair(const SobolPoint& point) {
   const Word* const scrambling = point.scramblings.word;
   const Word number = cn::reverse_bits(scramble_reversed(point.reversed_sample, scrambling[0]));
@@ -71,8 +72,8 @@ inline UniformPair sobol_pair(const SobolPoint& point) {
   return {uniform_of(u), uniform_of(v)};
 }
 
-/// A number in (0, 1) that is stratified over the samples of a pixel, independent of the pair's. Scrambling
-/// looks at a word's low bits first, so one word serves for order and value.
+/// Returns a number in (0, 1) that is stratified over the samples of a pixel, independent of the pair.
+/// Scrambling looks at a word's low bits first, so one word serves for order and value.
 inline cn::poly<double> sobol_single(const SobolPoint& point) {
   const Word& scrambling = point.scramblings.word[3];
   const Word number = cn::reverse_bits(scramble_reversed(point.reversed_sample, scrambling));

@@ -1,6 +1,6 @@
-#include <algorithm>
+#include "firmware/path_tracer/stages/intersection_stage.hpp"
 
-#include "firmware/path_tracer/stages/stages.hpp"
+#include <algorithm>
 
 namespace path_tracer {
 
@@ -11,7 +11,8 @@ int IntersectionStage::load_bytes(Program program) {
 
 int IntersectionStage::save_bytes(const ProgramConfig& config) {
   const int bytes = sizeof(ScatterRecord);
-  return config.casts_shadow_rays() ? bytes + int{sizeof(LightingRecord)} + ray_bytes(config) : bytes;
+  return config.casts_shadow_rays() ? bytes + int{sizeof(LightingRecord)} + RayStore::room_bytes(config)
+                                    : bytes;
 }
 
 IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
@@ -32,7 +33,7 @@ IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   Saves saves;
   saves.scatter = cutter.take<ScatterRecord>();
   saves.lighting = cutter.take<LightingRecord>();
-  saves.shadow_ray = take_ray(cutter);
+  saves.shadow_ray = rays_.take_room(cutter);
   saves.direct_light = same_place.take<DirectLightRecord>();
   return saves;
 }
@@ -75,7 +76,7 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   arguments.casts_shadow_rays = context_.config.casts_shadow_rays();
   arguments.cull_shadow_rays = context_.config.cull_shadow_rays;
   arguments.scatter = to.scatter;
-  arguments.shadow_ray = PolyPointer<RayRecord>(to.shadow_ray.span().offset_bytes);
+  arguments.shadow_ray = to.shadow_ray.ray;
   arguments.lighting = to.lighting;
   arguments.casts = &bin.casts;
   context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
@@ -95,7 +96,7 @@ void IntersectionStage::save(std::uint64_t step, int block) {
   const Bins::Block& bin = bin_block(block);
   save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.segments());
   if (!context_.config.casts_shadow_rays()) return;
-  save_rays(step, block, from.shadow_ray, bin.casts);
+  rays_.save(context_.saves, step, block, from.shadow_ray, bin.light_place, bin.casts);
   save_block(step, block, context_.layout.lighting_bin, from.lighting, bin.casts);
   save_block(step, block, context_.layout.direct_light_bin, from.direct_light, bin.shadow);
 }

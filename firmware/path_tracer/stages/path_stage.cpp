@@ -1,17 +1,13 @@
+#include "firmware/path_tracer/stages/path_stage.hpp"
+
 #include <algorithm>
 #include <numeric>
 
-#include "firmware/path_tracer/stages/stages.hpp"
-
 namespace path_tracer {
 
-CameraRays::CameraRays(const Work& work, int pixels)
-    : total_(std::uint64_t(work.samples) * std::uint64_t(pixels)),
-      first_sample_(work.first_sample),
-      pixels_(pixels) {}
-
-PathStage::PathStage(const StageContext& context, const Work& work)
+PathStage::PathStage(const StageContext& context, RayStore& rays, const Work& work)
     : Stage(context),
+      rays_(rays),
       camera_rays_(work,
                    [&] {
                      const CameraRecord& camera = *context.machine.read_mono(context.layout.camera);
@@ -35,7 +31,7 @@ PathStage::Loads PathStage::loads(std::uint64_t step) const {
 PathStage::Saves PathStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
   return {cutter.take<VertexRecord>(), cutter.take<PathRecord>(), cutter.take<FinishedRecord>(),
-          cutter.take_place(),         cutter.take_place(),       take_ray(cutter)};
+          cutter.take_place(),         cutter.take_place(),       rays_.take_room(cutter)};
 }
 
 void PathStage::load(std::uint64_t step, int block) {
@@ -58,7 +54,7 @@ void PathStage::process(std::uint64_t step, int block) {
     context_.machine.number_ascending(ended_, number_);
     context_.counts.folds += std::uint64_t(finished_.count() - ended_count);
   }
-  replace_ended(step, block, ended_count);
+  continue_paths(step, block, ended_count);
 }
 
 void PathStage::append_vertices(std::uint64_t step, int block) {
@@ -85,7 +81,7 @@ void PathStage::append_vertices(std::uint64_t step, int block) {
   context_.machine.run(context_.kernels.append, arguments, appended_);
 }
 
-/// Beside what the chip does, so it costs nothing.
+/// Statistics of the simulator; the chip does not count, so this is free.
 void PathStage::count_segments(int block) {
   std::uint32_t* const of_block = &segments_[std::size_t(first_slot(block))];
   std::vector<std::uint64_t>& paths = context_.counts.paths_by_segments;
@@ -112,14 +108,14 @@ void PathStage::list_finished(std::uint64_t step) {
   finished_count_ += count;
 }
 
-void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
+void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
   const Saves to = saves(step);
   const auto started = static_cast<std::int32_t>(
       std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
-  replaced_ = LaneMask{};
-  ReplaceArguments arguments;
+  continued_ = LaneMask{};
+  ContinuePathsArguments arguments;
   arguments.path = from.path;
   arguments.scatter = from.scatter;
   arguments.number = number_;
@@ -135,16 +131,15 @@ void PathStage::replace_ended(std::uint64_t step, int block, int ended_count) {
   }
   arguments.sampler = context_.config.sampler;
   arguments.seed = context_.config.seed;
-  arguments.next_pixel = camera_rays_.next_pixel();
-  arguments.next_sample = camera_rays_.next_sample();
-  arguments.pixel_stride = context_.config.pixel_stride % camera_rays_.pixels();
+  arguments.camera_rays = {camera_rays_.next_pixel(), camera_rays_.next_sample(),
+                           context_.config.pixel_stride % camera_rays_.pixels()};
   arguments.remaining = started;
   arguments.next_path = to.path;
-  arguments.ray = PolyPointer<RayRecord>(to.ray.span().offset_bytes);
-  arguments.live = &replaced_;
-  context_.machine.run(context_.kernels.replace, arguments, appended_);
+  arguments.ray = to.ray.ray;
+  arguments.live = &continued_;
+  context_.machine.run(context_.kernels.continue_paths, arguments, appended_);
   camera_rays_.issue(std::uint64_t(started));
-  bin.live = replaced_.with(bin.casts);
+  bin.live = continued_.with(bin.casts);
   bin.shadow = bin.casts;
 }
 
@@ -153,7 +148,7 @@ void PathStage::fill(std::uint64_t step, int block) {
   ended_ = appended_;
   finished_ = LaneMask{};
   const int count = context_.machine.number_ascending(ended_, number_);
-  replace_ended(step, block, count);
+  continue_paths(step, block, count);
   appended_ = LaneMask{};
 }
 
@@ -165,8 +160,8 @@ void PathStage::save(std::uint64_t step, int block) {
     context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place),
                             from.finished.span(), finished_);
   }
-  save_block(step, block, context_.layout.path_bin, from.path, replaced_);
-  save_rays(step, block, from.ray, replaced_);
+  save_block(step, block, context_.layout.path_bin, from.path, continued_);
+  rays_.save(context_.saves, step, block, from.ray, bin_block(block).light_place, continued_);
 }
 
 }  // namespace path_tracer

@@ -1,4 +1,4 @@
-#include "firmware/path_tracer/stages/stages.hpp"
+#include "firmware/path_tracer/stages/radiance_stage.hpp"
 
 namespace path_tracer {
 

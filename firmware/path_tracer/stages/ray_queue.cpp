@@ -9,21 +9,25 @@ RayQueue::RayQueue(cn::Machine& machine, const Kernels& kernels, const Layout& l
       lights_(layout.lights.address),
       number_{machine.poly_memory().allocate("numbers of rays", sizeof(std::int32_t)).offset_bytes} {}
 
-void RayQueue::enqueue(TransferRing& saves, std::uint64_t step, PolyPointer<QueuedRay> ray,
-                       PolyField<MonoAddress> light_place, std::uint64_t first_slot,
-                       const LaneMask& with_ray) {
+RayRoom RayQueue::take_room(BufferCutter& cutter) const {
+  const PolyPointer<QueuedRay> queued = cutter.take<QueuedRay>();
+  return {queued.part(&QueuedRay::ray), queued, cutter.take_place()};
+}
+
+void RayQueue::save(TransferRing& saves, std::uint64_t step, int block, const RayRoom& from,
+                    PolyField<MonoAddress> light_place, const LaneMask& with_ray) {
   const int count = machine_.number_ascending(with_ray, number_);
   if (count == 0) return;
   EnqueueArguments arguments;
   arguments.number = number_;
-  arguments.ray = ray;
+  arguments.ray = from.queued;
   arguments.light_place = light_place;
   arguments.lights = lights_;
-  arguments.first_slot = static_cast<int>(first_slot);
+  arguments.first_slot = block * machine_.num_pes();
   arguments.first_place = place(rays_);
-  arguments.place = {ray.span().offset_bytes + PolyPointer<QueuedRay>::size_bytes()};
+  arguments.place = from.place;
   machine_.run(kernels_.traversal().enqueue, arguments, with_ray);
-  saves.copy_p2m(step, TransferRing::kNoBlock, machine_.places_in(arguments.place), ray.span(), with_ray);
+  saves.copy_p2m(step, TransferRing::kNoBlock, machine_.places_in(from.place), from.queued.span(), with_ray);
   rays_ += count;
   last_writer_ = step;
 }

@@ -1,30 +1,25 @@
 #pragma once
 
-#include "firmware/path_tracer/kernels/kernels.hpp"
-#include "firmware/path_tracer/stages/transfer_ring.hpp"
+#include "firmware/path_tracer/stages/ray_store.hpp"
 
 namespace path_tracer {
 
-/// The ray bin of programs that use a tree. A ray's way through the tree ends in another PE than it began in,
-/// so rays need not stand in their slots: they stand packed, and PEs that are idle take the next ones.
-class RayQueue {
+/// The ray queue of a tree traversal. A ray's traversal ends in another PE than it began in, so rays need not
+/// stand in their slots: the queue holds them packed, and idle PEs take the next ones.
+class RayQueue : public RayStore {
  public:
   RayQueue(cn::Machine& machine, const Kernels& kernels, const Layout& layout);
 
-  /// Bytes that enqueue() wants behind a QueuedRay in SRAM, until the save is over.
-  static constexpr int kPlaceBytes = sizeof(cn::MonoAddress);
-
-  /// Appends the rays of the lanes `with_ray`.
-  /// @param ray a QueuedRay, of which the RayRecord is filled, and a place behind it
-  /// @param light_place of the block of slots
-  void enqueue(TransferRing& saves, std::uint64_t step, PolyPointer<QueuedRay> ray,
-               PolyField<MonoAddress> light_place, std::uint64_t first_slot, const LaneMask& with_ray);
+  RayRoom take_room(BufferCutter& cutter) const override;
+  /// Appends the rays, packed.
+  void save(TransferRing& saves, std::uint64_t step, int block, const RayRoom& from,
+            PolyField<MonoAddress> light_place, const LaneMask& with_ray) override;
 
   int rays() const { return rays_; }  ///< appended since clear()
   int left() const { return rays_ - taken_; }
-  /// The step whose save was the last to bring rays.
+  /// The latest step whose save brought rays.
   std::uint64_t last_writer() const { return last_writer_; }
-  /// Place of the next ray that nobody took.
+  /// Place of the next ray to take.
   cn::MonoAddress next_place() const { return place(taken_); }
   void take(int rays) { taken_ += rays; }
   void clear() { rays_ = taken_ = 0; }

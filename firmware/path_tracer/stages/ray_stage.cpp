@@ -1,4 +1,4 @@
-#include "firmware/path_tracer/stages/stages.hpp"
+#include "firmware/path_tracer/stages/ray_stage.hpp"
 
 namespace path_tracer {
 
@@ -16,9 +16,9 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.triangle_count = context_.layout.triangle_count;
   arguments.triangles =
       context_.machine.read_mono(context_.layout.triangles, std::size_t(arguments.triangle_count));
-  if (sieve_.triangles.empty())
-    sieve_ = make_sieve(arguments.triangles, arguments.triangle_count, context_.layout.reach);
-  arguments.sieve = &sieve_;
+  if (prefilter_.triangles.empty())
+    prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, context_.layout.reach);
+  arguments.prefilter = &prefilter_;
   arguments.reach = context_.layout.reach;
   arguments.surfaces = context_.layout.surfaces.address;
   arguments.hit = PolyPointer<HitRecord>(context_.saves.buffer(step));

@@ -3,8 +3,8 @@
 namespace path_tracer {
 namespace {
 
-// What a compiler makes of the bookkeeping, in instructions of the control unit (assumed): a request is four
-// arguments, an address and the call; a look at one ring entry is a load, a compare and a branch.
+// Instructions of the control unit for the bookkeeping, as a compiler would make it (assumed): a request is
+// four arguments, an address and the call; checking one ring entry is a load, a compare and a branch.
 constexpr std::uint64_t kRequestInstructions = 12;
 constexpr std::uint64_t kEntryInstructions = 3;
 

@@ -9,11 +9,11 @@
 namespace path_tracer {
 
 /// n-buffering in one direction (paper, section 3.3): as many poly buffers as steps may be under way at once,
-/// taken in turn by step number, each with a semaphore that counts its finished transfers. Every bin uses the
-/// same ring, so that the last steps of a bin overlap with the first of the next.
+/// used in turn by step number. Each has a semaphore that counts its finished transfers. All stages use the
+/// same ring, so that the last steps of a stage overlap with the first of the next.
 ///
-/// A synchronous ring does without: each copy is over before the next instruction ("0-buffering simply means
-/// that each load or save operation was carried out when it occurred in the code", paper, section 4.1).
+/// In a synchronous ring each copy is over before the next instruction ("0-buffering simply means that each
+/// load or save operation was carried out when it occurred in the code", paper, section 4.1).
 class TransferRing {
  public:
   struct Buffers {
@@ -26,20 +26,20 @@ class TransferRing {
 
   cn::PolySpan buffer(std::uint64_t step) const { return entry(step).span; }
 
-  /// For transfers that are of no block of the slots'.
+  /// Block of transfers that belong to no block of slots.
   static constexpr int kNoBlock = -1;
   void copy_m2p(std::uint64_t step, int block, cn::PolySpan destination, const cn::MonoPlaces& source,
                 const cn::LaneMask& enabled);
   void copy_p2m(std::uint64_t step, int block, const cn::MonoPlaces& destination, cn::PolySpan source,
                 const cn::LaneMask& enabled);
 
-  /// Until all transfers in the buffer that `step` uses are over, whichever step started them.
+  /// Waits until all transfers in the buffer that `step` uses are over, whichever step started them.
   void wait(std::uint64_t step);
 
-  /// Until all transfers that were started for records of `block` are over.
+  /// Waits until all transfers that were started for records of `block` are over.
   void wait_block(int block);
 
-  /// Until all transfers of steps up to `step` are over.
+  /// Waits until all transfers of steps up to `step` are over.
   void wait_until(std::uint64_t step);
 
  private:

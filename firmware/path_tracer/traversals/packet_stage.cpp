@@ -6,12 +6,12 @@ namespace path_tracer {
 namespace {
 
 // Instructions of the control unit (assumed): the stack's two words and its pointer, the parts of a
-// reference, and a branch; the order of children is a network of comparisons, one in four instructions.
+// reference, and a branch. The order of children is a network of comparisons, four instructions each.
 constexpr std::uint64_t kPushInstructions = 5;
 constexpr std::uint64_t kPopInstructions = 8;
 constexpr std::uint64_t kComparisonInstructions = 4;
 
-/// Of SortingNetwork (node_visitor.hpp).
+/// Comparisons of SortingNetwork (node_visitor.hpp).
 constexpr int merge_comparisons(int width) {
   return width == 2 ? 1 : 2 * merge_comparisons(width / 2) + width / 2 - 1;
 }
@@ -47,7 +47,7 @@ void PacketStage::process(std::uint64_t step, int block) {
   finish(step, record_, rays_);
 }
 
-/// Returns the shadow rays.
+/// Begins the rays of the packet. Returns the shadow rays.
 LaneMask PacketStage::begin(std::uint64_t step) {
   LaneMask seeks_light;
   BeginPacketArguments arguments;
@@ -60,7 +60,7 @@ LaneMask PacketStage::begin(std::uint64_t step) {
   return seeks_light;
 }
 
-/// Light by light: a block has few of them, and their triangles as mono operands cost no PE a load.
+/// Tests light by light: a block has few of them, and triangles as mono operands cost no PE a load.
 void PacketStage::test_lights(LaneMask seeks_light) {
   while (context_.machine.count(seeks_light) > 0) {
     const std::int32_t light = least_light(seeks_light);
@@ -103,7 +103,7 @@ void PacketStage::walk() {
   }
 }
 
-/// A ray's limit may have come down since its key was made.
+/// Asks the rays again, because a ray's limit may have decreased since its key was made.
 LaneMask PacketStage::rays_that_want(const Entry& entry) {
   LaneMask wanting;
   WantArguments arguments;
@@ -131,9 +131,9 @@ void PacketStage::visit(const Entry& entry, const LaneMask& rays) {
   push_children(node, entry.level, enters_first);
 }
 
-/// In the order in which most rays want them: what most enter first comes first. An order by the signs of
-/// most directions, which needs no votes, visits so much more that it is no faster. Without a vote no ray
-/// meets any.
+/// Pushes children in the order in which most rays need them: the child that most rays enter first comes
+/// first. An order by the signs of most directions needs no votes, but visits so many more nodes that it is
+/// no faster. Without a vote, no ray meets any child.
 void PacketStage::push_children(const MonoNode& node, int level, const LaneMask* enters_first) {
   int votes[kMaxNodeWidth] = {};
   int order[kMaxNodeWidth] = {};

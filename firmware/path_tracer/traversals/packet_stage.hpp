@@ -1,30 +1,31 @@
 #pragma once
 
 #include "firmware/path_tracer/kernels/packet_kernels.hpp"
+#include "firmware/path_tracer/traversals/tree_search.hpp"
 #include "firmware/path_tracer/traversals/tree_stage.hpp"
 
 /// Coherent packets, for comparison: a block of rays shares one traversal (Wald, Slusallek, Benthin, Wagner,
 /// "Interactive Rendering with Coherent Ray Tracing", Eurographics 2001; Boulos et al., "Packet-based Whitted
-/// and Distribution Ray Tracing", GI 2007). The control unit goes through the tree and hands nodes and
-/// triangles to all PEs; no PE loads any of them. A node is visited when one ray of the block wants it.
+/// and Distribution Ray Tracing", GI 2007). The control unit traverses the tree and broadcasts nodes and
+/// triangles to all PEs; no PE loads any of them. A node is visited if one ray of the block needs it.
 namespace path_tracer {
 
-/// Ray bin: takes a block of rays through the whole tree. Its blocks are the ray bin's, packed.
+/// Packet stage: takes a block of rays through the whole tree. Its blocks are those of the ray queue.
 class PacketStage : public TreeStage {
  public:
   PacketStage(const StageContext& context, TreeContext& tree);
 
-  const char* bin() const override { return "ray bin"; }
+  const char* name() const override { return "packet stage"; }
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int /*block*/) override { save_hits(step); }
 
  private:
-  /// What the packet has yet to come to, on the control unit's stack.
+  /// A node or leaf that the packet has still to visit, on the control unit's stack.
   struct Entry {
     ChildReference reference;
     int level = 0;  ///< of the node
-    int place = 0;  ///< of the rays' keys for it
+    int place = 0;  ///< place of the rays' keys for it
   };
 
   LaneMask begin(std::uint64_t step);
@@ -38,7 +39,7 @@ class PacketStage : public TreeStage {
   void test_leaf(std::int32_t first_triangle, std::int32_t count, const LaneMask& rays);
 
   const PacketKernels& packet_kernels_;
-  PolyPointer<TraversalRecord> record_;  ///< of the block that is processed
+  PolyPointer<TraversalRecord> record_;  ///< of the block in process
   PolyPointer<PacketRecord> packet_;
   PacketKeys keys_;
   MonoNodes nodes_;
@@ -49,16 +50,11 @@ class PacketStage : public TreeStage {
 class PacketTraversal : public TreeTraversal {
  public:
   PacketTraversal(const StageContext& context, TreeContext& tree)
-      : TreeTraversal(context, tree),
-        queue_(*context.queue),
-        num_pes_(context.machine.num_pes()),
-        stage_(context, tree) {}
+      : queue_(tree.queue), num_pes_(context.machine.num_pes()), stage_(context, tree) {}
 
+  void plan_first(const Plan& plan) override;
   void after_step(const Stage& /*stage*/, int /*block*/, const Plan& /*plan*/) override {}
   bool has(const Stage& stage) const override { return &stage == &stage_; }
-
- protected:
-  void plan_first(const Plan& plan) override;
 
  private:
   RayQueue& queue_;

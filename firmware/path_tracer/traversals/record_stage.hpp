@@ -3,11 +3,12 @@
 #include "firmware/path_tracer/stages/transfer_ring.hpp"
 #include "firmware/path_tracer/traversals/tree_stage.hpp"
 
-/// What the ways have in common that keep rays in mono memory between their turns: their records travel.
+/// Shared by the traversals that keep rays in mono memory between their turns: rays' records are loaded and
+/// saved.
 namespace path_tracer {
 
-/// Records of rays in SRAM. A buffer stays a step's from the load, which is begun two steps of n ahead since
-/// a ray's leaf is known only when the ray is there, to the end of the save.
+/// Records of rays in SRAM. A buffer belongs to a step from its load to the end of its save. The load begins
+/// two times n steps ahead, because a ray's leaf is known only when the ray has arrived.
 class RecordRing {
  public:
   RecordRing(cn::Machine& machine, const ProgramConfig& config);
@@ -16,14 +17,14 @@ class RecordRing {
   PolyPointer<TraversalRecord> record(std::uint64_t step) const {
     return PolyPointer<TraversalRecord>(ring_.buffer(step));
   }
-  /// Where each PE's record is saved.
+  /// Mono address at which each PE's record is saved.
   PolyField<MonoAddress> record_to(std::uint64_t step) const {
     return {ring_.buffer(step).offset_bytes + record_bytes_};
   }
   int record_bytes() const { return record_bytes_; }
 
   void wait(std::uint64_t step) { ring_.wait(step); }
-  /// Of records that lie side by side, after the step that saved the last of them.
+  /// Loads records that lie side by side, after step `last_writer` has saved the last of them.
   void load(std::uint64_t step, MonoAddress first, std::uint64_t last_writer, const LaneMask& rays);
   void save(std::uint64_t step, const LaneMask& rays);
 
@@ -37,8 +38,8 @@ class RecordRing {
   TransferRing ring_;
 };
 
-/// A stage that takes rays through the tree for a turn. Those that are through are done with, the others are
-/// put back for another turn.
+/// A stage that takes rays through the tree for a turn. It finishes rays at the end of their traversal and
+/// puts the others back for another turn.
 class RecordStage : public TreeStage {
  public:
   RecordStage(const StageContext& context, TreeContext& tree, RecordRing& records)
@@ -47,7 +48,7 @@ class RecordStage : public TreeStage {
 
  protected:
   void traverse_and_put_back(std::uint64_t step, const LaneMask& rays, const Needs& needs, std::size_t pass);
-  /// Decides where the records of `alive` are saved (RecordRing::record_to).
+  /// Decides where the records of the remaining rays `alive` are saved (RecordRing::record_to).
   virtual void put_back(std::uint64_t step, const LaneMask& rays, const LaneMask& alive,
                         std::size_t pass) = 0;
 
@@ -57,14 +58,15 @@ class RecordStage : public TreeStage {
   LaneMask alive_;
 };
 
-/// Ray bin: takes rays as far as the resident nodes go. Its blocks are the ray bin's, packed.
-/// @tparam Base a RecordStage, which knows where rays are put
+/// Begin stage: takes rays from the ray queue as far as the resident nodes go. Its blocks are those of the
+/// ray queue.
+/// @tparam Base a RecordStage, which decides where rays are put
 template <class Base>
 class BeginStage : public Base {
  public:
   using Base::Base;
 
-  const char* bin() const override { return "ray bin"; }
+  const char* name() const override { return "begin stage"; }
   void load(std::uint64_t step, int block) override { this->load_packed_rays(step, block); }
   void process(std::uint64_t step, int block) override {
     const LaneMask rays = this->packed_rays(block);

@@ -26,7 +26,7 @@ void RefillStage::load(std::uint64_t step, int index) {
 }
 
 void RefillStage::load_rays(std::uint64_t step, Group& group) {
-  RayQueue& queue = *context_.queue;
+  RayQueue& queue = tree_.queue;
   group.fresh = LaneMask{};
   const int idle = num_pes() - group.going_on;
   const int count = std::min(idle, queue.left());
@@ -57,7 +57,7 @@ void RefillStage::process(std::uint64_t step, int index) {
   finish(step, group.record, rays.without(group.alive));
 }
 
-/// Beside what the chip does, so it costs nothing.
+/// Statistics of the simulator; the chip does not count, so this is free.
 void RefillStage::count_turns(Group& group, const LaneMask& rays) {
   count_rays(0, std::uint64_t(group.fresh.count()));
   count_lanes(0, rays);  // all PEs

@@ -3,9 +3,9 @@
 namespace path_tracer {
 namespace {
 
-// Instructions of the control unit (assumed). To append rays is to look up the treelet's block in a table of
-// mono memory that the data cache seldom holds, and to change two entries; to take a block is to look for the
-// fullest in lists by how full they are.
+// Instructions of the control unit (assumed). To append rays, it looks up the treelet's block in a table of
+// mono memory that is seldom in the data cache, and changes two entries. To take a block, it looks for the
+// fullest in lists by number of rays.
 constexpr std::uint64_t kAppendInstructions = 60;
 constexpr std::uint64_t kTakeInstructions = 60;
 
@@ -25,7 +25,7 @@ void SharedTreeletStage::put_back(std::uint64_t step, const LaneMask& rays, cons
   rays_.queues.forget(rays.count() - going_on);
 }
 
-/// Treelet by treelet, what is left at last into the mixed queue.
+/// Appends treelet by treelet; rays without room there go into the mixed queue at the end.
 void SharedTreeletStage::sort(std::uint64_t step, const LaneMask& alive, int rays) {
   Needs needs;
   locate(step, records_.record(step), alive, needs);
@@ -61,7 +61,7 @@ LaneMask SharedTreeletStage::rays_of_treelet(std::uint64_t step, std::int32_t tr
   return equal;
 }
 
-/// One ray needs no number.
+/// Appends rays to the queue of a treelet. A single ray needs no number.
 void SharedTreeletStage::append(std::uint64_t step, std::int32_t treelet, const LaneMask& lanes, int rays) {
   if (rays > 1) context_.machine.number_ascending(lanes, rays_.number);
   context_.machine.issue_mono(kAppendInstructions);
@@ -114,9 +114,8 @@ void GroupStage::broadcast(std::uint64_t step, const State& state) {
 }
 
 SharedTreeletTraversal::SharedTreeletTraversal(const StageContext& context, TreeContext& tree)
-    : TreeTraversal(context, tree),
-      machine_(context.machine),
-      queue_(*context.queue),
+    : machine_(context.machine),
+      queue_(tree.queue),
       most_planned_(record_steps(context.config)),
       rays_(context.machine, context.config, context.layout),
       begin_(context, tree, rays_),
@@ -128,8 +127,8 @@ void SharedTreeletTraversal::plan_first(const Plan& plan) {
   for (int block = 0; block < steps_left_; ++block) plan(begin_, block);
 }
 
-/// As many steps are planned as may be loaded at a time: waiting longer for a block to become full would let
-/// the pipeline run dry.
+/// Plans as many steps as may be loaded at a time. If it waited longer for blocks to become full, the
+/// pipeline would run dry.
 void SharedTreeletTraversal::after_step(const Stage& /*stage*/, int /*block*/, const Plan& plan) {
   --steps_left_;
   while (steps_left_ < most_planned_) {

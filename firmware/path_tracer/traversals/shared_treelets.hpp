@@ -1,32 +1,33 @@
 #pragma once
 
 #include "firmware/path_tracer/traversals/record_stage.hpp"
+#include "firmware/path_tracer/traversals/tree_search.hpp"
 #include "firmware/path_tracer/traversals/treelet_queues.hpp"
 
 /// Rays grouped by the treelet that they need next (queues at treelets: Pharr, Kolb, Gershbein, Hanrahan,
-/// "Rendering Complex Scenes with Memory-Coherent Ray Tracing", SIGGRAPH 1997; Aila, Karras, HPG 2010): all
-/// rays of a block go through the same one.
+/// "Rendering Complex Scenes with Memory-Coherent Ray Tracing", SIGGRAPH 1997; Aila, Karras, HPG 2010). All
+/// rays of a block go through the same treelet.
 ///
-/// It comes into the PEs word by word, as a mono operand that a kernel stores. The PIO engine would serve PE
-/// after PE though all ask for the same; where it consolidates equal addresses
-/// (pio.consolidate_equal_addresses) it would still take a request of its set-up time, about what the kernel
-/// takes for a small treelet.
+/// The treelet comes into the PEs word by word, as a mono operand that a kernel stores. PIO would serve PE
+/// after PE though all need the same data. Where it consolidates equal addresses
+/// (pio.consolidate_equal_addresses), it would still need the set-up time of a request, which is about the
+/// kernel's time for a small treelet.
 ///
-/// The control unit learns which treelets a block's rays need next by reductions, the least of them first
-/// (cn::keep_least), so that sorting a block takes time by how many different ones there are.
+/// The control unit learns by reductions which treelets a block's rays need next, the least of them first
+/// (cn::keep_least). So the time to sort a block depends on the number of different treelets.
 namespace path_tracer {
 
-/// The rays in SRAM and the queues that they go round.
+/// The rays in SRAM and the queues that they pass through.
 struct SharedTreeletContext {
   SharedTreeletContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout);
 
   RecordRing records;
   TreeletQueues queues;
   PolyField<std::int32_t> number;
-  int slot_bits;  ///< of a node's slot
+  int slot_bits;  ///< bits of a node's slot number
 };
 
-/// Puts rays back into the queues.
+/// Puts the remaining rays back into the queues.
 class SharedTreeletStage : public RecordStage {
  public:
   SharedTreeletStage(const StageContext& context, TreeContext& tree, SharedTreeletContext& rays)
@@ -44,19 +45,20 @@ class SharedTreeletStage : public RecordStage {
   void append(std::uint64_t step, std::int32_t treelet, const LaneMask& lanes, int rays);
 };
 
-/// Queues: loads rays, then their leaves, takes them through their treelet. Its blocks are the pool's.
+/// Group stage: loads a group of rays, then their leaves; takes them through their treelet. Its blocks are
+/// the pool's.
 class GroupStage : public SharedTreeletStage {
  public:
   GroupStage(const StageContext& context, TreeContext& tree, SharedTreeletContext& rays);
 
-  const char* bin() const override { return "treelet queues"; }
+  const char* name() const override { return "group stage"; }
   bool prepares() const override { return true; }
   void load(std::uint64_t step, int block) override;
   void prepare(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
 
  private:
-  /// Of a step, from its load to its end.
+  /// State of a step, from its load to its end.
   struct State {
     LaneMask rays;
     std::int32_t treelet = TreeletQueues::kMixed;
@@ -72,22 +74,20 @@ class SharedTreeletTraversal : public TreeTraversal {
  public:
   SharedTreeletTraversal(const StageContext& context, TreeContext& tree);
 
+  void plan_first(const Plan& plan) override;
   void after_step(const Stage& stage, int block, const Plan& plan) override;
   bool has(const Stage& stage) const override { return &stage == &begin_ || &stage == &group_; }
-
- protected:
-  void plan_first(const Plan& plan) override;
 
  private:
   std::optional<int> take_block();
 
   cn::Machine& machine_;
   RayQueue& queue_;
-  int most_planned_;  ///< steps, before blocks that are partly full are taken
+  int most_planned_;  ///< maximum number of planned steps
   SharedTreeletContext rays_;
   BeginStage<SharedTreeletStage> begin_;
   GroupStage group_;
-  int steps_left_ = 0;  ///< that are planned
+  int steps_left_ = 0;  ///< planned and not yet processed
 };
 
 }  // namespace path_tracer

@@ -43,8 +43,7 @@ void TraverseStage::process(std::uint64_t step, int block) {
 }
 
 TemporaryBinTraversal::TemporaryBinTraversal(const StageContext& context, TreeContext& tree)
-    : TreeTraversal(context, tree),
-      queue_(*context.queue),
+    : queue_(tree.queue),
       num_pes_(context.machine.num_pes()),
       rays_(context.machine, context.config, context.layout),
       begin_(context, tree, rays_),
@@ -60,7 +59,7 @@ void TemporaryBinTraversal::plan_block(const Plan& plan, int block) {
   ++steps_left_;
 }
 
-/// A block that is partly full is processed only when nothing is left that might fill it.
+/// A partly full block is processed only when no other step can fill it.
 void TemporaryBinTraversal::after_step(const Stage& /*stage*/, int /*block*/, const Plan& plan) {
   --steps_left_;
   while (const std::optional<int> block = rays_.bin.take_full()) plan_block(plan, *block);

@@ -4,8 +4,9 @@
 
 namespace path_tracer {
 
-TreeContext::TreeContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout)
-    : tree{config.tree, 0, 0}, reach(layout.reach) {
+TreeContext::TreeContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout,
+                         RayQueue& ray_queue)
+    : queue(ray_queue), tree{config.tree, 0, 0}, reach(layout.reach) {
   const int bytes = tree.shape.resident_bytes();
   const cn::PolySpan resident = machine.poly_memory().allocate("resident nodes", bytes);
   tree.resident_offset = resident.offset_bytes;
@@ -41,11 +42,11 @@ TreeStage::Hits TreeStage::hits(std::uint64_t step) const {
 
 LaneMask TreeStage::packed_rays(int block) const {
   const int first = block * num_pes();
-  return LaneMask::first(std::min(num_pes(), context_.queue->rays() - first));
+  return LaneMask::first(std::min(num_pes(), tree_.queue.rays() - first));
 }
 
 void TreeStage::load_packed_rays(std::uint64_t step, int block) {
-  RayQueue& queue = *context_.queue;
+  RayQueue& queue = tree_.queue;
   context_.saves.wait_until(queue.last_writer());
   const LaneMask rays = packed_rays(block);
   context_.loads.copy_m2p(step, TransferRing::kNoBlock, loads(step).ray.span(),
@@ -124,7 +125,7 @@ LaneMask TreeStage::traverse(std::uint64_t step, PolyPointer<TraversalRecord> re
 void TreeStage::finish(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays) {
   finished_ = rays;
   tree_.finished += std::uint64_t(rays.count());
-  if (!rays.any()) return;  // as the control unit knows from the count of those that go on
+  if (!rays.any()) return;  // the control unit knows this from the count of remaining rays
   const Hits to = hits(step);
   FinishArguments arguments;
   arguments.record = record;
@@ -148,7 +149,7 @@ void TreeStage::save_hits(std::uint64_t step) {
   tree_.last_hit_step = step;
 }
 
-/// These three are beside what the chip does, so they cost nothing.
+/// Statistics of the simulator, as the next two functions; the chip does not count, so this is free.
 void TreeStage::count_pass(std::size_t pass, const LaneMask& rays) {
   count_rays(pass, std::uint64_t(rays.count()));
   count_lanes(pass, rays);
@@ -163,7 +164,7 @@ void TreeStage::count_lanes(std::size_t pass, const LaneMask& rays) {
   TraversalCounts& counts = context_.counts.traversal;
   const auto lanes = std::uint64_t(num_pes());
   counts.lanes[pass] += lanes;
-  const auto in_bin = std::uint64_t(context_.queue->rays());
+  const auto in_bin = std::uint64_t(tree_.queue.rays());
   if (20 * tree_.finished >= 19 * in_bin) return;
   counts.rays_before_tail += std::uint64_t(rays.count());
   counts.lanes_before_tail += lanes;
@@ -181,11 +182,6 @@ void RecallStage::process(std::uint64_t, int block) {
   bin.hit_something = LaneMask{};
   context_.machine.run(context_.kernels.traversal().recall,
                        RecallArguments{bin.surface_place, &bin.hit_something}, bin.live);
-}
-
-void TreeTraversal::begin_pass(const Plan& plan) {
-  tree_.finished = 0;
-  plan_first(plan);
 }
 
 }  // namespace path_tracer

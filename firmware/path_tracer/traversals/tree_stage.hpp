@@ -1,24 +1,23 @@
 #pragma once
 
-#include <functional>
-
 #include "firmware/path_tracer/stages/ray_queue.hpp"
 #include "firmware/path_tracer/stages/stage.hpp"
 
-/// What the ways through the tree share.
+/// What all tree traversals share.
 namespace path_tracer {
 
-/// The tree in SRAM, and what is counted.
+/// The tree in SRAM, the rays that go through it, and counts.
 struct TreeContext {
-  TreeContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout);
+  TreeContext(cn::Machine& machine, const ProgramConfig& config, const Layout& layout, RayQueue& queue);
 
+  RayQueue& queue;
   TreeInSram tree;
   double reach;
-  std::uint64_t last_hit_step = 0;  ///< the last that saved hits
-  std::uint64_t finished = 0;       ///< of the rays that are in the ray bin
+  std::uint64_t last_hit_step = 0;  ///< latest step that saved hits
+  std::uint64_t finished = 0;       ///< number of the ray queue's rays that are finished
 };
 
-/// A stage whose PEs hold rays on their way through the tree.
+/// A stage whose PEs hold rays in the tree.
 class TreeStage : public Stage {
  public:
   TreeStage(const StageContext& context, TreeContext& tree)
@@ -40,29 +39,29 @@ class TreeStage : public Stage {
   };
   Loads loads(std::uint64_t step) const;
 
-  /// Of a block of the ray bin, packed: PEs with a ray.
+  /// Returns the PEs with a ray in a block of the ray queue.
   LaneMask packed_rays(int block) const;
-  /// The next block.
+  /// Loads the next block of the ray queue.
   void load_packed_rays(std::uint64_t step, int block);
 
-  /// What rays want of the tree.
+  /// What rays need of the tree.
   struct Needs {
     LaneMask leaf;
     LaneMask treelet;
     int leaves = 0;
   };
-  /// Looks it up.
+  /// Finds what rays need.
   void locate(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays, Needs& needs);
   void load_leaves(std::uint64_t step, Needs& needs);
   void load_treelets(std::uint64_t step, const Needs& needs);
-  /// All of this.
+  /// Finds and loads what rays need.
   void load_tree(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays, Needs& needs);
-  /// Puts rays that were loaded where rays in the tree are kept.
+  /// Makes the TraversalRecords of rays that were loaded.
   void enter(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays);
-  /// Returns those that go on.
+  /// Takes rays through the tree for a turn. Returns the remaining ones.
   LaneMask traverse(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays,
                     const Needs& needs);
-  /// Makes the hits of rays that are through, and saves them.
+  /// Writes the hits of finished rays; save_hits() saves them.
   void finish(std::uint64_t step, PolyPointer<TraversalRecord> record, const LaneMask& rays);
   void save_hits(std::uint64_t step);
   void count_pass(std::size_t pass, const LaneMask& rays);
@@ -70,7 +69,7 @@ class TreeStage : public Stage {
     if (context_.counts.traversal.rays.size() <= pass) make_room_for_counts(pass);
     context_.counts.traversal.rays[pass] += rays;
   }
-  /// Of a pass that has rays, which may be fewer than these.
+  /// Counts the PEs of a pass, and the rays in them.
   void count_lanes(std::size_t pass, const LaneMask& rays);
 
   TreeContext& tree_;
@@ -89,44 +88,18 @@ class TreeStage : public Stage {
   LaneMask finished_;
 };
 
-/// Between the tree and the intersection bin: brings each slot what became of its ray.
+/// Recall stage, between the tree and the intersection stage: brings each slot whether its ray hit something.
 class RecallStage : public Stage {
  public:
   RecallStage(const StageContext& context, const TreeContext& tree) : Stage(context), tree_(tree) {}
 
-  const char* bin() const override { return "intersection bin"; }
+  const char* name() const override { return "intersection stage"; }  // whose first half it is
   void load(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t, int) override {}
 
  private:
   const TreeContext& tree_;
-};
-
-/// Takes all rays of the ray bin through the tree.
-class TreeTraversal {
- public:
-  using Plan = std::function<void(Stage&, int block)>;
-
-  TreeTraversal(const StageContext& context, TreeContext& tree) : tree_(tree), recall_(context, tree) {}
-  virtual ~TreeTraversal() = default;
-  TreeTraversal(const TreeTraversal&) = delete;
-  TreeTraversal& operator=(const TreeTraversal&) = delete;
-
-  /// Plans the first steps for the rays that are in the ray bin.
-  void begin_pass(const Plan& plan);
-  /// Plans those that follow from one that was processed.
-  virtual void after_step(const Stage& stage, int block, const Plan& plan) = 0;
-  virtual bool has(const Stage& stage) const = 0;
-
-  RecallStage& recall() { return recall_; }
-
- protected:
-  virtual void plan_first(const Plan& plan) = 0;
-
- private:
-  TreeContext& tree_;
-  RecallStage recall_;
 };
 
 }  // namespace path_tracer

@@ -18,8 +18,8 @@ int TreeletQueues::room_in(std::int32_t treelet) const {
   return open == open_.end() ? 0 : num_pes_ - block(open->second).rays;
 }
 
-/// What is kept back: blocks for all rays that may come, one that is partly full, and those that were taken
-/// when they were so.
+/// The pool keeps back blocks for all rays that may come, one partly full block, and those that were taken
+/// when they were partly full.
 bool TreeletQueues::has_room(std::int32_t treelet, int rays) const {
   if (rays <= room_in(treelet)) return true;
   const int kept = (outside_ + num_pes_ - 1) / num_pes_ + 1 + most_taken_;

@@ -8,9 +8,9 @@
 namespace path_tracer {
 namespace {
 
-// Instructions of the control unit (assumed). Loads of what the kernel takes as an operand are charged there,
-// so that these are what stands between: a number of 4 bytes is converted and multiplied; one of 8 bits is
-// converted, multiplied, added to and multiplied; a power of two is made of its exponent in three.
+// Instructions of the control unit (assumed). The kernel charges the loads of its operands, so these are what
+// lies between: a number of 4 bytes is converted and multiplied; one of 8 bits is converted, multiplied,
+// added to and multiplied; a power of two is made from its exponent in three instructions.
 constexpr std::uint64_t kNodeInstructions = 6;  // its address, the references
 
 template <class T>

@@ -10,7 +10,7 @@
 #include "firmware/path_tracer/records/node_layout.hpp"
 #include "firmware/path_tracer/records/traversal_record.hpp"
 
-/// Rays as the nodes of a format are tested for: DoubleNodeRay for fp64, else SingleNodeRay.
+/// Rays in the number format in which nodes are tested: DoubleNodeRay for fp64, else SingleNodeRay.
 namespace path_tracer {
 
 using cn::poly4;
@@ -23,19 +23,19 @@ inline poly4<T> same4(const poly<T>& a) {
   return {a, a, a, a};
 }
 
-/// What the distance of a plane across an axis is made of: (origin - coordinate) * scale.
+/// Operands of the distance of a plane across an axis: (origin - coordinate) * scale.
 template <class Number>
 struct PlaneOperands {
   poly<Number> origin;
   poly<Number> scale;
 };
 
-/// The same numbers as BoxRay makes.
+/// Tests in double precision; the same numbers as BoxRay.
 class DoubleNodeRay {
  public:
   using Number = double;
 
-  /// @param latest entry that is of use
+  /// @param latest latest entry that matters
   DoubleNodeRay(const Point3& origin, const Direction3& direction, double /*to_node_unit*/,
                 const poly<double>& latest)
       : ray_(origin, direction),
@@ -43,7 +43,7 @@ class DoubleNodeRay {
         limit_(cn::high_word(latest)) {}
 
   const mask& backward(int axis) const { return backward_[axis]; }
-  /// Of the planes that the ray meets first, and last.
+  /// Operands of the planes that the ray meets first, and last.
   PlaneOperands<double> first(int axis) const {
     return {component(ray_.origin(), axis), component(ray_.minus_inverse(), axis)};
   }
@@ -52,8 +52,8 @@ class DoubleNodeRay {
   static poly<double> greater(const poly<double>& a, const poly<double>& b) { return cn::max(a, b); }
   static poly<double> lesser(const poly<double>& a, const poly<double>& b) { return cn::min(a, b); }
 
-  /// The upper half of the double at which a box is entered, above the reference; or kNoEntry. What leads
-  /// nowhere has an empty box.
+  /// Returns the upper half of the double at which a box is entered, above the reference; or kNoEntry. A
+  /// child that leads nowhere has an empty box.
   /// @param entry +0 or more, never -0, whose bits are those of a large number
   poly<std::uint64_t> entry_of(const poly<double>& entry, const poly<double>& exit,
                                const poly<std::uint32_t>& reference) const {
@@ -66,8 +66,8 @@ class DoubleNodeRay {
   static void put_in_order(poly<std::uint64_t>& first, poly<std::uint64_t>& second) {
     const mask swapped = second < first;
     const poly<std::uint64_t> lower = cn::select(swapped, second, first);
-    second.become(cn::select(swapped, first, second));
-    first.become(lower);
+    second.assign_all_lanes(cn::select(swapped, first, second));
+    first.assign_all_lanes(lower);
   }
   static constexpr std::uint64_t kNoEntry = ~std::uint64_t{0};
 
@@ -77,27 +77,27 @@ class DoubleNodeRay {
   poly<std::uint32_t> limit_;
 };
 
-/// In single precision, but never stricter than BoxRay: what that one meets, at a distance that no hit of the
-/// scene exceeds, this one meets and enters no later. Three things see to it.
+/// Tests in single precision that are never stricter than BoxRay's: if BoxRay meets a box at a distance that
+/// no hit of the scene exceeds, so does SingleNodeRay, and enters it no later. Three things ensure this.
 ///
-/// Coordinates are in the node's unit, with the scene's reach 1 to 2 of them (to_node_unit()), and the
-/// direction is scaled to a largest component of 0.7 to 1.5: no distance of a hit is above 4.
+/// Coordinates are in the node's unit, in which the scene's reach is 1 to 2 (to_node_unit()), and the
+/// direction is scaled to a largest component of 0.7 to 1.5. So no distance of a hit is above 4.
 ///
-/// The origin is moved along the axis, by no less than its rounding, so that planes met first are nearer and
-/// planes met last farther. With u = 2^-24 the scale is rounded to less than 1 - 2.9 u of its size for the
-/// former and more than 1 + 2.9 u for the latter, where the difference, the product and all that is rounded
-/// in double precision are within 2.1 u.
+/// The origin is moved along the axis by no less than its rounding, so that planes met first are nearer and
+/// planes met last farther. With u = 2^-24, the scale is rounded to less than 1 - 2.9 u of its size for the
+/// former and more than 1 + 2.9 u for the latter, while the difference, the product and all rounding in
+/// double precision are within 2.1 u.
 ///
-/// Components below 2^-60 are taken as 2^-60. The origin is moved by 2^-40 at least, so a plane that is met
-/// last is then 2^19 away or more, farther than any hit. For the same reason no distance that counts is so
-/// small that it underflows: one that is met last at all is 2^-42 away, one that is met first and ahead yet
-/// was as far before the origin was moved, and so is its limit.
+/// Components below 2^-60 are taken as 2^-60. The origin is moved by at least 2^-40, so a plane that is met
+/// last is then at least 2^19 away, farther than any hit. For the same reason no distance that matters
+/// underflows: a plane met last at all is 2^-42 away; a plane met first and still ahead was as far before the
+/// origin was moved, and so is its limit.
 class SingleNodeRay {
  public:
   using Number = float;
 
   /// @param to_node_unit factor of coordinates
-  /// @param latest entry that is of use, in lengths of the direction
+  /// @param latest latest entry that matters, in lengths of the direction
   SingleNodeRay(const Point3& origin, const Direction3& direction, double to_node_unit,
                 const poly<double>& latest) {
     const poly<double> largest =
@@ -110,7 +110,7 @@ class SingleNodeRay {
     const poly4<double> from = as_vector(origin) * to_node_unit;
     set_origins(from, scale);
     set_scales(scale);
-    limit_.become(cn::convert<float>(latest * (length * (to_node_unit * (1.0 + kScaleMargin)))));
+    limit_.assign_all_lanes(cn::convert<float>(latest * (length * (to_node_unit * (1.0 + kScaleMargin)))));
   }
 
   const mask& backward(int axis) const { return backward_[axis]; }
@@ -120,7 +120,7 @@ class SingleNodeRay {
   static poly<float> greater(const poly<float>& a, const poly<float>& b) { return cn::max_by_bits(a, b); }
   static poly<float> lesser(const poly<float>& a, const poly<float>& b) { return cn::min_by_bits(a, b); }
 
-  /// The float at which a box is entered, above the reference; or kNoEntry.
+  /// Returns the float at which a box is entered, above the reference; or kNoEntry.
   poly<std::uint64_t> entry_of(const poly<float>& entry, const poly<float>& exit,
                                const poly<std::uint32_t>& reference) const {
     const mask met = cn::at_most_by_bits(entry, cn::min_by_bits(exit, limit_));
@@ -133,12 +133,12 @@ class SingleNodeRay {
   static void put_in_order(poly<std::uint64_t>& first, poly<std::uint64_t>& second) {
     cn::put_in_order(first, second);
   }
-  /// The largest finite double: behind infinity's entry, which as a double is finite, too.
+  /// The largest finite double. It comes after the entry at infinity, whose word is a finite double, too.
   static constexpr std::uint64_t kNoEntry = 0x7fefffffffffffffu;
 
  private:
   static constexpr double kLeastComponent = 0x1p-60;
-  static constexpr double kOriginMargin = 0x1p-23;  ///< of its size
+  static constexpr double kOriginMargin = 0x1p-23;  ///< relative to the origin's size
   static constexpr double kLeastOriginMargin = 0x1p-40;
   static constexpr double kScaleMargin = 0x1p-22;
 
@@ -152,8 +152,8 @@ class SingleNodeRay {
     const poly4<double> nearer = from - forward;
     const poly4<double> farther = from + forward;
     for (int axis = 0; axis < kAxes; ++axis) {
-      first_[axis].origin.become(cn::convert<float>(nearer[axis]));
-      last_[axis].origin.become(cn::convert<float>(farther[axis]));
+      first_[axis].origin.assign_all_lanes(cn::convert<float>(nearer[axis]));
+      last_[axis].origin.assign_all_lanes(cn::convert<float>(farther[axis]));
     }
   }
 
@@ -162,8 +162,8 @@ class SingleNodeRay {
     const poly4<double> less = all * (1.0 - kScaleMargin);
     const poly4<double> more = all * (1.0 + kScaleMargin);
     for (int axis = 0; axis < kAxes; ++axis) {
-      first_[axis].scale.become(cn::convert<float>(less[axis]));
-      last_[axis].scale.become(cn::convert<float>(more[axis]));
+      first_[axis].scale.assign_all_lanes(cn::convert<float>(less[axis]));
+      last_[axis].scale.assign_all_lanes(cn::convert<float>(more[axis]));
       backward_[axis] = scale[axis] > 0.0;
     }
   }

@@ -6,12 +6,12 @@
 #include "firmware/cn/language/indexed.hpp"
 #include "firmware/path_tracer/tree/node_ray.hpp"
 
-/// Nodes as a PE reads them from its own SRAM, each PE another one.
+/// Nodes as each PE reads its own from its SRAM.
 namespace path_tracer {
 
 using PolyAddress = poly<std::int32_t>;
 
-/// One of something for each of a node's children, or for each word of a row of them.
+/// One value for each child of a node, or for each word of a row of children.
 template <class T, int count>
 using Row = std::array<poly<T>, static_cast<std::size_t>(count)>;
 
@@ -19,7 +19,7 @@ template <class T, class OfPlace, int... place>
 inline Row<T, sizeof...(place)> make_row(OfPlace&& of_place, std::integer_sequence<int, place...>) {
   return {of_place(place)...};
 }
-/// Of of_place(0), of_place(1), ...
+/// Makes a row of of_place(0), of_place(1), ...
 template <class T, int count, class OfPlace>
 inline Row<T, count> make_row(OfPlace&& of_place) {
   return make_row<T>(of_place, std::make_integer_sequence<int, count>());
@@ -30,16 +30,16 @@ inline poly<T> chosen(const mask& condition, const poly<T>& if_set, const poly<T
   return cn::IndexedRecord::chosen(condition, if_set, otherwise);
 }
 
-/// Of the children's boxes the planes across an axis.
+/// The planes of the children's boxes across an axis.
 template <class Number, int width>
 struct Planes {
   Row<Number, width> first;  ///< that the ray meets
   Row<Number, width> last;
 };
 
-/// The coordinates of the children in the components of their boxes (lower x, y, z, upper x, y, z), the same
-/// numbers as the host's decode_box() makes of them. Where a ray goes backward along the axis, the upper
-/// planes come first: they are read from their places (IndexedRecord::chosen).
+/// Reads the coordinates of the children's boxes by component (lower x, y, z, upper x, y, z), the same
+/// numbers as decode_box() of the testbench makes. If a ray goes backward along the axis, the upper planes
+/// come first; the ray reads them from their places (IndexedRecord::chosen).
 template <NodeFormat format, int width>
 class NodeReader;
 
@@ -78,7 +78,7 @@ class NodeReader<NodeFormat::fp32, width> {
   }
 
  private:
-  static constexpr int kWords = width / 2;  ///< of two children each
+  static constexpr int kWords = width / 2;  ///< a word holds two children
   using Words = Row<std::uint64_t, kWords>;
 
   Words row(int component) const {
@@ -101,15 +101,15 @@ class NodeReader<NodeFormat::quantised8, width> {
     static_assert(sizeof(QuantisedFrame) == 16);
     const poly<std::uint64_t> x_and_y = node.load<std::uint64_t>(0);
     const poly<std::uint64_t> z_and_exponents = node.load<std::uint64_t>(8);
-    origin_[0].become(cn::low_float(x_and_y));
-    origin_[1].become(cn::high_float(x_and_y));
-    origin_[2].become(cn::low_float(z_and_exponents));
+    origin_[0].assign_all_lanes(cn::low_float(x_and_y));
+    origin_[1].assign_all_lanes(cn::high_float(x_and_y));
+    origin_[2].assign_all_lanes(cn::low_float(z_and_exponents));
     const poly<std::uint32_t> exponents = cn::high_word(z_and_exponents);
-    step_[0].become(power_of_two(exponents));
-    step_[1].become(power_of_two(exponents >> 8));
-    step_[2].become(power_of_two(exponents >> 16));
+    step_[0].assign_all_lanes(power_of_two(exponents));
+    step_[1].assign_all_lanes(power_of_two(exponents >> 8));
+    step_[2].assign_all_lanes(power_of_two(exponents >> 16));
     for (int i = 0; i < kStepWords; ++i)
-      steps_[i].become(node.load<std::uint64_t>(int{sizeof(QuantisedFrame)} + i * 8));
+      steps_[i].assign_all_lanes(node.load<std::uint64_t>(int{sizeof(QuantisedFrame)} + i * 8));
   }
 
   Planes<float, width> planes(int axis, const mask& backward) const {
@@ -122,9 +122,9 @@ class NodeReader<NodeFormat::quantised8, width> {
   }
 
  private:
-  static constexpr int kFours = width / 4;  ///< of children
+  static constexpr int kFours = width / 4;  ///< groups of four children
   static constexpr int kStepWords = 2 * kAxes * width / 8;
-  /// Of four children each.
+  /// Steps of four children in each float's bits.
   using Steps = Row<float, kFours>;
 
   Steps row(int component) const {
@@ -148,7 +148,7 @@ class NodeReader<NodeFormat::quantised8, width> {
       return {left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]};
     }
   }
-  /// Of the lowest byte.
+  /// Returns the power of two whose exponent is in the lowest byte.
   static poly<float> power_of_two(const poly<std::uint32_t>& exponent) {
     return cn::float_of_bits((exponent & poly<std::uint32_t>(0xffu)) << 23);
   }

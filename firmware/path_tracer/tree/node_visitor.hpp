@@ -2,11 +2,11 @@
 
 #include "firmware/path_tracer/tree/node_reader.hpp"
 
-/// Which children of a node a ray meets, and in which order.
+/// Finds which children of a node a ray meets, and in which order.
 namespace path_tracer {
 
 /// Batcher's odd-even merge sort (Sorting Networks and Their Applications, AFIPS 1968): a network of 1, 5 or
-/// 19 comparisons, the last half of which merge what is in order alternately.
+/// 19 comparisons. Its last stage merges two sorted interleaved halves.
 template <class Ray>
 class SortingNetwork {
  public:
@@ -22,8 +22,7 @@ class SortingNetwork {
   }
 
  private:
-  /// Of `count` places, each `stride` behind the one before, the two halves of which are in order
-  /// alternately.
+  /// Merges `count` places, `stride` apart, whose even and odd places are each in order.
   template <int count, int stride>
   static void merge(poly<std::uint64_t>* entry) {
     if constexpr (2 * stride == count) {
@@ -37,7 +36,7 @@ class SortingNetwork {
   }
 };
 
-/// A node's children, in the order in which the ray enters them; kNoEntry for those that it does not meet.
+/// A node's children in the order in which the ray enters them; kNoEntry for those that it does not meet.
 template <int width>
 struct VisitOrder {
   poly<std::uint64_t> entry[width];
@@ -61,7 +60,7 @@ class NodeVisitor {
     for (std::size_t i = 0; i < width; ++i) {
       const poly<std::uint32_t> reference = i % 2 == 0 ? cn::low_word(two[i / 2]) : cn::high_word(two[i / 2]);
       const poly<Number> entry = Ray::greater(poly<Number>(Number(0)), slabs.entry[i]);
-      order.entry[i].become(ray_.entry_of(entry, exit_of(slabs.exit[i], reference), reference));
+      order.entry[i].assign_all_lanes(ray_.entry_of(entry, exit_of(slabs.exit[i], reference), reference));
     }
     SortingNetwork<Ray>::template sort<width>(order.entry);
     return order;
@@ -73,8 +72,8 @@ class NodeVisitor {
   using Number = typename Ray::Number;
   using Numbers = Row<Number, width>;
 
-  /// The part of the ray within the boxes, as far as some axes go. Each axis is done with before the next, or
-  /// the host has more numbers at hand than registers.
+  /// The part of the ray within the boxes, for the axes so far. Each axis is completed before the next,
+  /// because the simulator's processor would otherwise run out of registers.
   struct Slabs {
     Numbers entry;
     Numbers exit;
@@ -87,7 +86,7 @@ class NodeVisitor {
 
   Slabs meet_planes(const NodeReader<format, width>& reader, int axis) const {
     const Planes<Number, width> planes = reader.planes(axis, ray_.backward(axis));
-    cn::issue(cn::InstructionClass::int32_alu, 2);  // where the sign of the direction has them read
+    cn::issue(cn::InstructionClass::int32_alu, 2);  // addresses by the sign of the direction
     const PlaneOperands<Number> first = ray_.first(axis);
     const PlaneOperands<Number> last = ray_.last(axis);
     if constexpr (width == 2) {
@@ -97,7 +96,7 @@ class NodeVisitor {
     }
   }
 
-  /// Before any entry where the child leads nowhere: other formats have an empty box there.
+  /// Returns an exit before any entry if the child leads nowhere. Other formats have an empty box there.
   static poly<Number> exit_of(const poly<Number>& exit, const poly<std::uint32_t>& reference) {
     if constexpr (format == NodeFormat::quantised8) {
       return cn::select(reference == poly<std::uint32_t>(PackedReference::kNowhere), poly<Number>(-1), exit);
@@ -111,7 +110,7 @@ class NodeVisitor {
     return (origins - planes) * scales;
   }
 
-  /// Four planes to a vector instruction.
+  /// Computes four planes with one vector instruction.
   static Numbers distances(const Numbers& planes, const PlaneOperands<Number>& operands) {
     const auto four_from = [&](std::size_t i) {
       return four_distances({planes[i], planes[i + 1], planes[i + 2], planes[i + 3]}, same4(operands.origin),
@@ -126,7 +125,7 @@ class NodeVisitor {
     }
   }
 
-  /// Of two children the planes that are met first and last make one.
+  /// Two children's first and last planes fill one vector.
   static Slabs meet_two(const Planes<Number, width>& planes, const PlaneOperands<Number>& first,
                         const PlaneOperands<Number>& last) {
     const poly4<Number> all =

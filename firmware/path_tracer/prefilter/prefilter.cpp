@@ -1,4 +1,4 @@
-#include "firmware/path_tracer/geometry/triangle_sieve.hpp"
+#include "firmware/path_tracer/prefilter/prefilter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,8 @@ std::array<float, 3> narrow(const vec3<double>& v, int exponent) {
           float(std::ldexp(v.z, exponent))};
 }
 
-SieveTriangle sieve_triangle(const TriangleRecord& triangle, const vec3<double>& anchor, int unit_exponent) {
+PrefilterTriangle prefilter_triangle(const TriangleRecord& triangle, const vec3<double>& anchor,
+                                     int unit_exponent) {
   const double largest = std::max(largest_component(triangle.edge1), largest_component(triangle.edge2));
   const int edge_exponent = largest > 0 ? -std::ilogb(largest) - 1 : 0;
   return {narrow(triangle.vertex - anchor, unit_exponent), narrow(triangle.edge1 * -1.0, edge_exponent),
@@ -27,15 +28,15 @@ SieveTriangle sieve_triangle(const TriangleRecord& triangle, const vec3<double>&
 
 }  // namespace
 
-TriangleSieve make_sieve(const TriangleRecord* first, int count, double reach) {
-  TriangleSieve sieve;
-  if (count == 0) return sieve;
-  sieve.anchor = first->vertex;
-  sieve.unit = to_node_unit(NodeFormat::fp32, reach);
-  sieve.triangles.reserve(std::size_t(count));
+Prefilter make_prefilter(const TriangleRecord* first, int count, double reach) {
+  Prefilter prefilter;
+  if (count == 0) return prefilter;
+  prefilter.anchor = first->vertex;
+  prefilter.unit = to_node_unit(NodeFormat::fp32, reach);
+  prefilter.triangles.reserve(std::size_t(count));
   for (int i = 0; i < count; ++i)
-    sieve.triangles.push_back(sieve_triangle(first[i], sieve.anchor, std::ilogb(sieve.unit)));
-  return sieve;
+    prefilter.triangles.push_back(prefilter_triangle(first[i], prefilter.anchor, std::ilogb(prefilter.unit)));
+  return prefilter;
 }
 
 }  // namespace path_tracer

@@ -4,11 +4,11 @@
 #include <cstdint>
 
 #include "firmware/path_tracer/geometry/triangle.hpp"
-#include "firmware/path_tracer/geometry/triangle_sieve.hpp"
+#include "firmware/path_tracer/prefilter/prefilter.hpp"
 
 namespace path_tracer {
 
-namespace sieve_detail {
+namespace prefilter_detail {
 
 using Floats = cn::Lanes<float>;
 using FloatChunk = Floats::Chunk;
@@ -55,7 +55,7 @@ inline Vector cross(const Vector& a, const Vector& b) {
           subtract_product(a.y, b.x, a.x * b.y)};
 }
 
-/// Of numbers; the host's comparison of them is one instruction.
+/// For operands without NaN, where x86-64 has one instruction.
 inline FloatChunk lesser(FloatChunk a, FloatChunk b) {
 #if defined(__AVX2__)
   return FloatChunk(_mm256_min_ps(__m256(a), __m256(b)));
@@ -81,7 +81,7 @@ inline unsigned signs(FloatChunk a) {
 
 constexpr int kLanesOfChunk = int{sizeof(FloatChunk) / sizeof(float)};
 
-/// Bits of lanes in the order in which floats stand (place_of_lane).
+/// Reorders bits of lanes to the order of floats (place_of_lane).
 inline unsigned in_order_of_floats(unsigned lanes) {
   unsigned places = 0;
   for (int lane = 0; lane < cn::kStripLanes; ++lane)
@@ -89,54 +89,54 @@ inline unsigned in_order_of_floats(unsigned lanes) {
   return places;
 }
 
-}  // namespace sieve_detail
+}  // namespace prefilter_detail
 
-/// Rays in single precision, to be asked which triangles they may cross.
+/// A strip's rays in single precision; they tell which triangles they may cross.
 ///
-/// With u = 2^-24: coordinates are below 2 and have an error of 2 u, ways from a ray's origin to a vertex
-/// have 6 u; directions are below 1.5, edges below 1, `back` below 4. So the sides u and v (triangle.hpp),
-/// whose terms are below 6, are known to 162 u, the determinant to 90 u, the distance to 190 u, and u + v -
-/// |determinant| to 450 u. The margin is 512 u. A determinant within it may have either sign, so nothing is
-/// known then.
-class SieveRay {
+/// Errors, with u = 2^-24: coordinates are below 2 and have an error of 2 u; vectors from a ray's origin to a
+/// vertex have 6 u. Directions are below 1.5, edges below 1, `back` below 4. So the barycentric numerators u
+/// and v (triangle.hpp), whose terms are below 6, are known to 162 u, the determinant to 90 u, the distance
+/// to 190 u, and u + v - |determinant| to 450 u. The margin is 512 u. A determinant within the margin may
+/// have either sign; such a ray may cross.
+class PrefilterRay {
  public:
-  SieveRay(const RayOperands& ray, const TriangleSieve& sieve) {
+  PrefilterRay(const RayOperands& ray, const Prefilter& prefilter) {
     const poly<double> largest =
         cn::max(cn::max(cn::abs(ray.direction.x), cn::abs(ray.direction.y)), cn::abs(ray.direction.z));
     const poly<double> scale = cn::inverse_power_of_two(cn::nearest_power_of_two(largest));
-    set(origin_, (ray.origin - sieve.anchor) * sieve.unit);
+    set(origin_, (ray.origin - prefilter.anchor) * prefilter.unit);
     set(direction_, ray.direction * scale);
     left_face_ =
         cn::halves_of_words<cn::WordHalf::low>(cn::bit_cast_lanes<std::uint64_t>(ray.left_face.lanes()));
   }
 
-  /// Lanes that may cross the triangle, in the order of floats.
-  unsigned may_cross(const SieveTriangle& triangle) const {
+  /// Returns the lanes that may cross the triangle, in the order of floats.
+  unsigned may_cross(const PrefilterTriangle& triangle) const {
     unsigned lanes = 0;
-    for (int i = 0; i < sieve_detail::Floats::kChunks; ++i)
-      lanes |= may_cross(triangle, i) << (i * sieve_detail::kLanesOfChunk);
+    for (int i = 0; i < prefilter_detail::Floats::kChunks; ++i)
+      lanes |= may_cross(triangle, i) << (i * prefilter_detail::kLanesOfChunk);
     return lanes;
   }
 
  private:
   static constexpr float kMargin = 0x1p-15f;
-  using Vector = sieve_detail::Vector;
+  using Vector = prefilter_detail::Vector;
 
-  void set(Vector (&to)[sieve_detail::Floats::kChunks], const vec3<poly<double>>& from) {
+  void set(Vector (&to)[prefilter_detail::Floats::kChunks], const vec3<poly<double>>& from) {
     const auto x = cn::narrow_lanes(from.x.lanes());
     const auto y = cn::narrow_lanes(from.y.lanes());
     const auto z = cn::narrow_lanes(from.z.lanes());
-    for (int i = 0; i < sieve_detail::Floats::kChunks; ++i) to[i] = {x.chunk[i], y.chunk[i], z.chunk[i]};
+    for (int i = 0; i < prefilter_detail::Floats::kChunks; ++i) to[i] = {x.chunk[i], y.chunk[i], z.chunk[i]};
   }
 
-  unsigned may_cross(const SieveTriangle& triangle, int i) const {
-    using sieve_detail::Bits;
-    using sieve_detail::FloatChunk;
-    using sieve_detail::greater;
-    using sieve_detail::lesser;
-    using sieve_detail::same;
-    using sieve_detail::same_bits;
-    using sieve_detail::signs;
+  unsigned may_cross(const PrefilterTriangle& triangle, int i) const {
+    using prefilter_detail::Bits;
+    using prefilter_detail::FloatChunk;
+    using prefilter_detail::greater;
+    using prefilter_detail::lesser;
+    using prefilter_detail::same;
+    using prefilter_detail::same_bits;
+    using prefilter_detail::signs;
     const Vector vertex = same(triangle.vertex);
     const Vector to_vertex{vertex.x - origin_[i].x, vertex.y - origin_[i].y, vertex.z - origin_[i].z};
     const Vector back = same(triangle.back);
@@ -150,15 +150,15 @@ class SieveRay {
     const FloatChunk u = signed_by(dot(moment, same(triangle.edge2)));
     const FloatChunk v = signed_by(dot(moment, same(triangle.minus_edge1)));
     const FloatChunk within = lesser(lesser(u, v), lesser(size - (u + v), distance));
-    // Negative where the ray passes by for certain.
+    // Negative where the ray misses for certain.
     const FloatChunk crossing = greater(within, minus_size) + same(kMargin);
     const Bits leaves = Bits(left_face_.chunk[i]) == same_bits(triangle.face);
-    return ~signs(FloatChunk(Bits(crossing) | leaves)) & ((1u << sieve_detail::kLanesOfChunk) - 1);
+    return ~signs(FloatChunk(Bits(crossing) | leaves)) & ((1u << prefilter_detail::kLanesOfChunk) - 1);
   }
 
-  Vector origin_[sieve_detail::Floats::kChunks];
-  Vector direction_[sieve_detail::Floats::kChunks];
-  sieve_detail::Floats left_face_;
+  Vector origin_[prefilter_detail::Floats::kChunks];
+  Vector direction_[prefilter_detail::Floats::kChunks];
+  prefilter_detail::Floats left_face_;
 };
 
 }  // namespace path_tracer

@@ -1,4 +1,4 @@
-#include "firmware/path_tracer/geometry/sieve_ray.hpp"
+#include "firmware/path_tracer/prefilter/prefilter_ray.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,13 @@
 
 #include "tests/support/vectors.hpp"
 
-namespace sieve_ray_test {
+namespace prefilter_ray_test {
 
 using path_tracer::Crossing;
+using path_tracer::Prefilter;
+using path_tracer::PrefilterRay;
 using path_tracer::RayOperands;
-using path_tracer::SieveRay;
 using path_tracer::TriangleRecord;
-using path_tracer::TriangleSieve;
 using test_support::kComponents;
 using test_support::load;
 using test_support::load3;
@@ -26,9 +26,9 @@ struct Place {
   double offset;
 };
 
-class SieveRayTest : public test_support::StripFixture, public testing::WithParamInterface<Place> {
+class PrefilterRayTest : public test_support::StripFixture, public testing::WithParamInterface<Place> {
  protected:
-  SieveRayTest() : StripFixture(512) {}
+  PrefilterRayTest() : StripFixture(512) {}
 
   double number(double size) { return std::uniform_real_distribution<double>(-size, size)(random_); }
   std::size_t one_of(std::size_t count) { return random_() % count; }
@@ -37,7 +37,7 @@ class SieveRayTest : public test_support::StripFixture, public testing::WithPara
   Vector point() { return middle() + Vector{number(scale()), number(scale()), number(scale())}; }
   double reach() const { return 1.125 * std::sqrt(12.0) * scale(); }
 
-  /// Of all sizes and shapes.
+  /// Returns a triangle of any size and shape.
   TriangleRecord triangle(int number_in_scene) {
     const Vector vertex = point();
     Vector edge1 = (point() - vertex) * std::ldexp(1.0, -int(one_of(12)));
@@ -59,12 +59,14 @@ class SieveRayTest : public test_support::StripFixture, public testing::WithPara
     const Vector product = cross(triangle.edge2, triangle.edge1);
     return scaled * (dot(triangle.back, triangle.back) / dot(product, triangle.back));
   }
-  /// Where both are 0 to 1 and their sum 1 at most, on the triangle.
+  /// Returns a point of the triangle's plane; on the triangle if a and b are 0 to 1 and their sum is at most
+  /// 1.
   Vector on(const TriangleRecord& triangle, double a, double b) {
     return triangle.vertex + edge(triangle, triangle.edge1) * a + edge(triangle, triangle.edge2) * b;
   }
 
-  /// Towards the triangle, its border, a corner or just past them; from anywhere, its plane or behind it.
+  /// Returns a ray towards the triangle, its border, a corner or just past them; from anywhere, from its
+  /// plane or from behind it.
   Ray ray_for(const TriangleRecord& triangle) {
     double a = number(0.5) + 0.5;
     double b = (1 - a) * (number(0.5) + 0.5);
@@ -88,11 +90,11 @@ class SieveRayTest : public test_support::StripFixture, public testing::WithPara
   }
 
   struct Found {
-    int crossings = 0;  ///< by the triangle's test
-    int may_cross = 0;  ///< by the sieve
-    int wrong = 0;      ///< crossings that the sieve rules out
+    int crossings = 0;  ///< found by the triangle's test
+    int may_cross = 0;  ///< found by the prefilter
+    int wrong = 0;      ///< crossings that the prefilter rules out
   };
-  /// Each PE's ray against each triangle.
+  /// Tests each PE's ray against each triangle.
   Found ask(const std::vector<Ray>& rays, const std::vector<TriangleRecord>& triangles) {
     PerPe<Vector> origins, directions;
     for (const Ray& ray : rays) {
@@ -100,20 +102,20 @@ class SieveRayTest : public test_support::StripFixture, public testing::WithPara
       directions.push_back(ray.direction);
     }
     const PerPe<std::int32_t> left_faces = per_pe<std::int32_t>(2);
-    const TriangleSieve sieve = path_tracer::make_sieve(triangles.data(), int(triangles.size()), reach());
+    const Prefilter prefilter = path_tracer::make_prefilter(triangles.data(), int(triangles.size()), reach());
     Found found;
     run([&] {
       const RayOperands ray{load3(origins), load3(directions), load(left_faces)};
-      const SieveRay sieve_ray(ray, sieve);
+      const PrefilterRay prefilter_ray(ray, prefilter);
       for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Crossing crossing(ray, triangles[i]);
         const auto crosses = mask_bits(
             (crossing.inside & (ray.left_face != cn::poly<std::int32_t>(triangles[i].face))).lanes());
-        const unsigned may_cross = sieve_ray.may_cross(sieve.triangles[i]);
+        const unsigned may_cross = prefilter_ray.may_cross(prefilter.triangles[i]);
         found.crossings += __builtin_popcount(crosses);
         found.may_cross += __builtin_popcount(may_cross);
         found.wrong +=
-            __builtin_popcount(path_tracer::sieve_detail::in_order_of_floats(crosses) & ~may_cross);
+            __builtin_popcount(path_tracer::prefilter_detail::in_order_of_floats(crosses) & ~may_cross);
       }
     });
     return found;
@@ -122,7 +124,7 @@ class SieveRayTest : public test_support::StripFixture, public testing::WithPara
   std::mt19937_64 random_{7};
 };
 
-TEST_P(SieveRayTest, LetsNoCrossingSlip) {
+TEST_P(PrefilterRayTest, LetsNoCrossingSlip) {
   Found all;
   for (int batch = 0; batch < 60; ++batch) {
     const std::vector<TriangleRecord> triangles = this->triangles(24);
@@ -136,8 +138,8 @@ TEST_P(SieveRayTest, LetsNoCrossingSlip) {
   EXPECT_GT(all.crossings, 5000);
 }
 
-/// Triangles as large as the scene, not seen edge on: what passes by, by a thousandth, is left out.
-TEST_P(SieveRayTest, LeavesOutWhatPassesBy) {
+/// Triangles as large as the scene, not seen edge on: rays that miss by a thousandth are left out.
+TEST_P(PrefilterRayTest, LeavesOutWhatPassesBy) {
   const double past = 1 + std::ldexp(1.0, -10);
   for (int batch = 0; batch < 20; ++batch) {
     const Vector vertex = middle() + Vector{number(0.1), number(0.1), number(0.1)} * scale();
@@ -159,8 +161,8 @@ TEST_P(SieveRayTest, LeavesOutWhatPassesBy) {
   }
 }
 
-/// Rays all over the scene, as a render's: hardly more triangles are let through than are crossed.
-TEST_P(SieveRayTest, LeavesOutNearlyAllThatIsNotCrossed) {
+/// Rays all over the scene, as in a render: hardly more triangles are let through than are crossed.
+TEST_P(PrefilterRayTest, LeavesOutNearlyAllThatIsNotCrossed) {
   const auto half_way = [&] { return (point() - middle()) * 0.5; };
   std::vector<TriangleRecord> triangles;
   for (int i = 0; i < 40; ++i)
@@ -177,7 +179,7 @@ TEST_P(SieveRayTest, LeavesOutNearlyAllThatIsNotCrossed) {
   EXPECT_LT(found.may_cross, 1.02 * found.crossings + 20);
 }
 
-TEST_P(SieveRayTest, LeavesOutTheFaceThatTheRayLeaves) {
+TEST_P(PrefilterRayTest, LeavesOutTheFaceThatTheRayLeaves) {
   TriangleRecord triangle = path_tracer::triangle_record(middle(), Vector{0.8, 0, 0} * scale(),
                                                          Vector{0, 0.8, 0} * scale(), {2, 0, reach()});
   const std::vector<Ray> rays(std::size_t(num_pes()),
@@ -187,9 +189,9 @@ TEST_P(SieveRayTest, LeavesOutTheFaceThatTheRayLeaves) {
   EXPECT_EQ(ask(rays, {triangle}).may_cross, num_pes());
 }
 
-INSTANTIATE_TEST_SUITE_P(Places, SieveRayTest,
+INSTANTIATE_TEST_SUITE_P(Places, PrefilterRayTest,
                          testing::Values(Place{1, 0}, Place{1e3, 0}, Place{3e-7, 0}, Place{1e-150, 0},
                                          Place{1e100, 0}, Place{1, 1e6}),
                          [](const auto& suite) { return "number" + std::to_string(suite.index); });
 
-}  // namespace sieve_ray_test
+}  // namespace prefilter_ray_test

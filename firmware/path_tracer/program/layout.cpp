@@ -1,10 +1,17 @@
-#include "firmware/path_tracer/program/program.hpp"
+#include "firmware/path_tracer/program/layout.hpp"
 
 #include <algorithm>
 
-#include "firmware/path_tracer/program/program_options.hpp"
-
 namespace path_tracer {
+
+int traversal_bin_blocks(const ProgramConfig& config) {
+  return config.bin_blocks + 2 * config.load_buffers() + config.save_buffers();
+}
+
+int record_steps(const ProgramConfig& config) {
+  return 2 * config.load_buffers() - 1;
+}
+
 namespace {
 
 /// Hands out mono memory from address 0 upwards, in whole DDR packets.
@@ -27,52 +34,10 @@ class MonoAllocator {
   std::uint64_t next_ = 0;
 };
 
-void require(bool ok, const std::string& what, const std::string& found, const std::string& allowed) {
-  if (!ok) throw ProgramError(what + ": found " + found + ", allowed is " + allowed);
-}
-
-}  // namespace
-
-void PassCounts::add(std::uint64_t count) {
-  if (passes_ == passes_per_interval_ * kMaxIntervals) {
-    for (std::size_t i = 0; i < kMaxIntervals / 2; ++i)
-      intervals_[i] = intervals_[2 * i] + intervals_[2 * i + 1];
-    intervals_.resize(kMaxIntervals / 2);
-    passes_per_interval_ *= 2;
-  }
-  if (passes_ == passes_per_interval_ * intervals_.size()) intervals_.push_back(0);
-  intervals_.back() += count;
-  ++passes_;
-}
-
-void validate(const ProgramConfig& config) {
-  for (const ProgramOption& option : program_options()) {
-    if (option.group == OptionGroup::tree && !config.uses_tree()) continue;
-    const OptionValue value = option.read(config);
-    require(is_allowed(option, value), option.name, value_text(value), allowed_text(option));
-  }
-  // Paper, section 3.3: "the bins must be at least n * (number of PEs) in length".
-  require(config.n <= config.bin_blocks, "n", std::to_string(config.n),
-          "at most the bin length, " + std::to_string(config.bin_blocks) + " blocks");
-  const NodeLayout& layout = config.tree.layout;
-  require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
-          "4 or 8 with node_format quantised8");
-}
-
-int traversal_bin_blocks(const ProgramConfig& config) {
-  return config.bin_blocks + 2 * config.load_buffers() + config.save_buffers();
-}
-
-int record_steps(const ProgramConfig& config) {
-  return 2 * config.load_buffers() - 1;
-}
-
-namespace {
-
-/// Blocks of the treelet queues' pool: all rays at once, packed, and some more for treelets' blocks that are
-/// partly full. When every treelet has one, blocks are processed nearly empty: with 128 more, a bin of 8
-/// blocks took 3283 cycles a ray in a scene of 1000 triangles and 7180 in one of 100,000; with 8 more 1871
-/// and 3210, a bin of 128 blocks 1732 and 2920. As rays end, treelets get the blocks that were theirs.
+/// Blocks of the treelet queues' pool: enough for all rays, packed, and a few more for partly full blocks of
+/// treelets. If every treelet has a block, blocks are processed nearly empty. With 128 more blocks, a bin of
+/// 8 blocks took 3283 cycles a ray in a scene of 1000 triangles and 7180 in one of 100,000; with 8 more, 1871
+/// and 3210; a bin of 128 blocks took 1732 and 2920. Blocks of rays that end become free for treelets.
 int treelet_pool_blocks(const SceneCounts& scene, int num_pes, const ProgramConfig& config) {
   constexpr std::int64_t kMostGroups = 8;
   const TreeShape& tree = config.tree;
@@ -99,7 +64,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.light_count = scene.lights;
   layout.tree_slots = scene.tree_slots;
   layout.camera = memory.take<CameraRecord>("camera", 1);
-  // Leaves are loaded in one size, so that the last one reaches beyond the last triangle.
+  // All leaf loads have the same size, so the last leaf's load reaches beyond the last triangle.
   const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
   layout.triangles =
       memory.take<TriangleRecord>("triangles", std::uint64_t(scene.triangles + behind_triangles));
@@ -111,7 +76,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
         "nodes", std::uint64_t(scene.tree_slots) * std::uint64_t(tree.layout.node_bytes()) / 8);
   layout.scene_bytes = memory.used_bytes();
   if (config.uses_tree()) {
-    layout.ray_queue = memory.take<QueuedRay>("ray bin", slots);
+    layout.ray_queue = memory.take<QueuedRay>("ray queue", slots);
   } else {
     layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
   }

@@ -1,5 +1,5 @@
-// The host's short cut through brute force against brute force: the same hits, to the last bit, and the same
-// instructions, however many PEs have a ray.
+// The simulator's prefilter against brute force without it: the same hits to the last bit, and the same
+// charged instructions, however many PEs have a ray.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
-namespace sifted_search_test {
+namespace prefilter_search_test {
 
 using path_tracer::RayRecord;
 using test_support::RaySearch;
@@ -31,15 +31,15 @@ struct Issued {
   }
 };
 
-class SiftedSearch : public testing::TestWithParam<std::tuple<test_support::NamedMesh, cn::Level>> {};
+class PrefilterSearch : public testing::TestWithParam<std::tuple<test_support::NamedMesh, cn::Level>> {};
 
-TEST_P(SiftedSearch, FindsAndIssuesWhatATestOfEveryTriangleDoes) {
+TEST_P(PrefilterSearch, FindsAndIssuesWhatATestOfEveryTriangleDoes) {
   const auto& [mesh, level] = GetParam();
   const testbench::Scene scene = test_support::scene_of(mesh.make());
   const SearchScene searched =
       test_support::search_scene(scene, {{path_tracer::NodeFormat::fp32, 4}, 1, 1, 2, 0, 0});
-  const path_tracer::TriangleSieve sieve =
-      path_tracer::make_sieve(searched.triangles.data(), int(searched.triangles.size()), searched.reach);
+  const path_tracer::Prefilter prefilter =
+      path_tracer::make_prefilter(searched.triangles.data(), int(searched.triangles.size()), searched.reach);
   RaySearch search(level);
   TestRays source(scene, 31);
   int hits = 0;
@@ -50,7 +50,7 @@ TEST_P(SiftedSearch, FindsAndIssuesWhatATestOfEveryTriangleDoes) {
     for (int i = 0; i < count; ++i) rays.push_back(source.ray(rays_in_all++ % TestRays::kKinds));
     const std::vector<SearchHit> expected = search.brute_force(searched, rays);
     const Issued all_tested(search.issued());
-    const std::vector<SearchHit> found = search.brute_force(searched, rays, &sieve);
+    const std::vector<SearchHit> found = search.brute_force(searched, rays, &prefilter);
     EXPECT_TRUE(Issued(search.issued()) == all_tested);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       ASSERT_TRUE(same(found[i], expected[i]))
@@ -61,7 +61,7 @@ TEST_P(SiftedSearch, FindsAndIssuesWhatATestOfEveryTriangleDoes) {
   EXPECT_GT(hits, int(rays_in_all) / 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, SiftedSearch,
+INSTANTIATE_TEST_SUITE_P(Meshes, PrefilterSearch,
                          testing::Combine(testing::ValuesIn(test_support::search_meshes()),
                                           testing::ValuesIn(cn::usable_levels())),
                          [](const auto& suite) {
@@ -69,4 +69,4 @@ INSTANTIATE_TEST_SUITE_P(Meshes, SiftedSearch,
                                   std::to_string(2 + int(std::get<1>(suite.param)));
                          });
 
-}  // namespace sifted_search_test
+}  // namespace prefilter_search_test

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cstring>
 
-#include "firmware/path_tracer/geometry/sieve_ray.hpp"
+#include "firmware/cn/language/shortcut.hpp"
+#include "firmware/path_tracer/prefilter/prefilter_ray.hpp"
 
-/// Brute force as the host carries it out: each lane tests the triangles that its ray may cross, which are a
-/// few of all. What comes out is the same to the bit, and so is what the PEs issue, which test them all.
+/// Brute force as the simulator executes it: each lane tests only the few triangles that its ray may cross.
+/// The PEs test all of them. The result is the same to the bit, and the charge is that of testing all.
 namespace path_tracer {
 
-/// Bit `bit` of each byte, the first byte's lowest.
+/// Collects bit `bit` of each byte; the first byte's becomes the lowest bit.
 inline std::uint64_t bit_of_each(const std::uint8_t (&bytes)[64], int bit) {
   std::uint64_t bits = 0;
 #if defined(__AVX2__)
@@ -26,12 +27,13 @@ inline std::uint64_t bit_of_each(const std::uint8_t (&bytes)[64], int bit) {
   return bits;
 }
 
-/// Up to 64 triangles, a bit each, for every lane.
+/// The triangles that remain to be tested, up to 64: one bit a triangle, for each lane.
 class Candidates {
  public:
   static constexpr int kTriangles = 64;
 
-  /// @param lanes of each triangle, bits in the order of floats; of triangles that there are not, none
+  /// @param lanes for each triangle the lanes that may cross it, in the order of floats; 0 behind the last
+  /// triangle
   explicit Candidates(const std::uint8_t (&lanes)[kTriangles]) {
     for (int lane = 0; lane < cn::kStripLanes; ++lane)
       of_lane_[lane] = bit_of_each(lanes, cn::place_of_lane<float>(lane));
@@ -41,12 +43,12 @@ class Candidates {
     for (const std::uint64_t triangles : of_lane_) all |= triangles;
     return all != 0;
   }
-  /// Lanes that have one left.
+  /// Lanes with a triangle left.
   mask left() const {
     const auto triangles = cn::load_lanes<std::uint64_t>(of_lane_);
     return mask(cn::compare_lanes<cn::Comparison::not_equal>(triangles, cn::broadcast(std::uint64_t{0})));
   }
-  /// Takes the lane's first; any of the triangles when it has none left.
+  /// Takes the lane's first triangle. Without one left, returns any of the triangles.
   int take(int lane) {
     std::uint64_t& triangles = of_lane_[lane];
     const int first = triangles != 0 ? __builtin_ctzll(triangles) : 0;
@@ -58,13 +60,13 @@ class Candidates {
   std::uint64_t of_lane_[cn::kStripLanes];
 };
 
-/// A triangle for each lane.
+/// One triangle for each lane.
 class LaneTriangles {
  public:
   LaneTriangles(const TriangleRecord* first, Candidates& candidates) {
     for (int lane = 0; lane < cn::kStripLanes; ++lane) at_[lane] = first + candidates.take(lane);
   }
-  /// All but the face.
+  /// Loads all members but the face.
   PolyTriangle load() const {
     return {vector(&TriangleRecord::vertex), vector(&TriangleRecord::edge1),
             vector(&TriangleRecord::edge2),  vector(&TriangleRecord::back),
@@ -72,7 +74,7 @@ class LaneTriangles {
   }
 
  private:
-  /// Chunk by chunk, so that values go from memory to a register and not by way of another place in memory.
+  /// Gathers chunk by chunk, so that values go from memory to a register without a detour through memory.
   template <class Lane, class Of>
   static cn::Lanes<Lane> gather(const Of& of) {
     return cn::each_chunk<Lane>(
@@ -97,31 +99,28 @@ class LaneTriangles {
   const TriangleRecord* at_[cn::kStripLanes];
 };
 
-/// Triangles that the control unit hands to all PEs one after the other.
-struct SiftedTriangles : MonoTriangles {
-  const TriangleSieve* sieve;  ///< or nothing, then each is tested
-};
-
-/// Lanes whose rays may cross each of `count` triangles, at most Candidates::kTriangles.
-inline Candidates sift(const SieveRay& ray, const SieveTriangle* first, int count) {
-  const unsigned enabled = sieve_detail::in_order_of_floats(cn::mask_bits(cn::strip.enabled));
+/// The triangles that each lane's ray may cross.
+/// @param count at most Candidates::kTriangles
+inline Candidates prefilter_candidates(const PrefilterRay& ray, const PrefilterTriangle* first, int count) {
+  const unsigned enabled = prefilter_detail::in_order_of_floats(cn::mask_bits(cn::strip.enabled));
   std::uint8_t lanes[Candidates::kTriangles];
   for (int i = 0; i < count; ++i) lanes[i] = std::uint8_t(ray.may_cross(first[i]) & enabled);
   std::memset(lanes + count, 0, std::size_t(Candidates::kTriangles - count));
   return Candidates(lanes);
 }
 
-/// What search_fast() finds, by the tests that may matter.
+/// What search_fast() finds, from the tests whose triangles may be crossed.
 template <class Found>
-mask search_sifted(const RayOperands& ray, const SiftedTriangles& all, Found& nearest) {
-  const SieveRay sieve_ray(ray, *all.sieve);
+mask search_candidates(const RayOperands& ray, const MonoTriangles& triangles, const Prefilter& prefilter,
+                       Found& nearest) {
+  const PrefilterRay prefilter_ray(ray, prefilter);
   mask tied(cn::mask_from_bits(0));
-  for (int first = 0; first < all.count; first += Candidates::kTriangles) {
-    Candidates candidates = sift(sieve_ray, all.sieve->triangles.data() + first,
-                                 std::min(Candidates::kTriangles, all.count - first));
+  for (int first = 0; first < triangles.count; first += Candidates::kTriangles) {
+    Candidates candidates = prefilter_candidates(prefilter_ray, prefilter.triangles.data() + first,
+                                                 std::min(Candidates::kTriangles, triangles.count - first));
     while (candidates.any()) {
       const mask left = candidates.left();
-      const PolyTriangle triangle = LaneTriangles(all.first + first, candidates).load();
+      const PolyTriangle triangle = LaneTriangles(triangles.first + first, candidates).load();
       const Crossing crossing(ray, triangle);
       tied = tied | take_nearer(crossing, triangle, left & crossing.inside, nearest);
     }
@@ -129,19 +128,23 @@ mask search_sifted(const RayOperands& ray, const SiftedTriangles& all, Found& ne
   return tied;
 }
 
-/// Each PE tests each triangle, which is issued for one of them as often as there are.
-template <class Found>
-mask search_fast(const RayOperands& ray, const SiftedTriangles& all, Found& nearest) {
-  const MonoTriangles& triangles = all;
-  if (all.sieve == nullptr || all.count == 0) return search_fast(ray, triangles, nearest);
-  if (!cn::issue_is_known())
-    cn::issue_times(std::uint64_t(all.count), [&] {
-      Found unused = nearest;
-      search_fast(ray, MonoTriangles{triangles.first, 1}, unused);
-    });
-  mask tied;
-  cn::issue_nothing([&] { tied = search_sifted(ray, all, nearest); });
-  return tied;
-}
+/// FastSearch by way of the prefilter: the same result, and the charge of testing every triangle.
+struct PrefilteredSearch {
+  const Prefilter* prefilter;  ///< of the triangles; nullptr to test each of them
+
+  template <class Found>
+  mask operator()(const RayOperands& ray, const MonoTriangles& triangles, Found& nearest) const {
+    if (prefilter == nullptr || triangles.count == 0) return search_fast(ray, triangles, nearest);
+    const auto charge_every_test = [&] {
+      if (cn::is_charged()) return;
+      cn::charge_times(std::uint64_t(triangles.count), [&] {
+        Found unused = nearest;
+        search_fast(ray, MonoTriangles{triangles.first, 1}, unused);
+      });
+    };
+    return cn::found_another_way(charge_every_test,
+                                 [&] { return search_candidates(ray, triangles, *prefilter, nearest); });
+  }
+};
 
 }  // namespace path_tracer

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/cn/chip/mono_memory.hpp"
+#include "firmware/path_tracer/program/program_config.hpp"
+#include "firmware/path_tracer/records/records.hpp"
+
+namespace path_tracer {
+
+/// Numbers that decide how much mono memory a scene takes.
+struct SceneCounts {
+  int triangles = 0;
+  int lights = 0;
+  int tree_slots = 0;  ///< nodes; 0 without a tree
+};
+
+/// Addresses in mono memory.
+struct Layout {
+  // The host writes the scene before the run.
+  cn::MonoPointer<CameraRecord> camera;
+  cn::MonoPointer<TriangleRecord> triangles;
+  cn::MonoPointer<SurfaceRecord> surfaces;
+  cn::MonoPointer<LightRecord> lights;
+  cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i
+  cn::MonoPointer<std::uint64_t> nodes;
+  int triangle_count =
+      0;  ///< with a tree, in order of leaves; behind them lie kLightRun triangles for each light
+  int light_count = 0;
+  int tree_slots = 0;
+  int treelet_pool_blocks = 0;
+  double reach = 0;  ///< no ray starts farther from a vertex (triangle_record.hpp)
+
+  // Bins: one record for each slot, slot_vertices for `vertices`.
+  cn::MonoPointer<RayRecord> ray_bin;    ///< of brute force
+  cn::MonoPointer<QueuedRay> ray_queue;  ///< of tree traversals
+  cn::MonoPointer<std::uint64_t> traversal_bin;
+  cn::MonoPointer<std::uint64_t> treelet_pool;
+  cn::MonoPointer<HitRecord> intersection_bin;
+  cn::MonoPointer<cn::MonoAddress> surface_place_bin;  ///< of tree traversals; otherwise PEs keep the places
+  cn::MonoPointer<ScatterRecord> scatter_bin;
+  cn::MonoPointer<LightingRecord> lighting_bin;
+  cn::MonoPointer<DirectLightRecord> direct_light_bin;
+  cn::MonoPointer<PathRecord> path_bin;
+  cn::MonoPointer<VertexRecord> vertices;
+  cn::MonoPointer<FoldRecord> folds;
+  cn::MonoPointer<FinishedRecord> finished;
+
+  // The host reads the results. It reads one half while the firmware fills the other.
+  cn::MonoPointer<ResultsHeader> results_header[2];
+  cn::MonoPointer<RadianceRecord> results[2];
+
+  std::uint64_t scene_bytes = 0;  ///< the host writes [0, scene_bytes)
+  std::uint64_t total_bytes = 0;
+
+  /// All addresses above by name, for messages.
+  struct Region {
+    const char* name;
+    cn::MonoAddress first;
+    std::uint64_t bytes;
+  };
+  std::vector<Region> regions;
+};
+
+Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& config);
+
+/// Blocks of the traversal bin's ring: enough for all rays and for blocks that are being loaded or saved.
+int traversal_bin_blocks(const ProgramConfig& config);
+
+/// Number of steps whose rays' records may be under way, from their load to the step's turn.
+int record_steps(const ProgramConfig& config);
+
+}  // namespace path_tracer

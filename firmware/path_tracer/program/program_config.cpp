@@ -1,0 +1,30 @@
+#include "firmware/path_tracer/program/program_config.hpp"
+
+#include <string>
+
+#include "firmware/path_tracer/program/program_options.hpp"
+
+namespace path_tracer {
+namespace {
+
+void require(bool ok, const std::string& what, const std::string& found, const std::string& allowed) {
+  if (!ok) throw ProgramError(what + ": found " + found + ", allowed is " + allowed);
+}
+
+}  // namespace
+
+void validate(const ProgramConfig& config) {
+  for (const ProgramOption& option : program_options()) {
+    if (option.group == OptionGroup::tree && !config.uses_tree()) continue;
+    const OptionValue value = option.read(config);
+    require(is_allowed(option, value), option.name, value_text(value), allowed_text(option));
+  }
+  // Paper, section 3.3: "the bins must be at least n * (number of PEs) in length".
+  require(config.n <= config.bin_blocks, "n", std::to_string(config.n),
+          "at most the bin length, " + std::to_string(config.bin_blocks) + " blocks");
+  const NodeLayout& layout = config.tree.layout;
+  require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
+          "4 or 8 with node_format quantised8");
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+
+#include "firmware/path_tracer/records/traversal_record.hpp"
+
+/// The firmware's options and their ranges.
+namespace path_tracer {
+
+/// What is timed; the columns of the paper's tables.
+enum class Program : std::uint8_t {
+  segments,  ///< path segments only; light is found by hitting it
+  direct,    ///< plus one shadow ray a segment
+  full,      ///< plus the radiance of finished paths
+};
+
+/// Where random numbers come from.
+enum class Sampler : std::uint8_t {
+  philox,  ///< independent
+  sobol,   ///< Owen-scrambled Sobol points: the samples of a pixel are stratified
+};
+
+/// How a point on a light is chosen.
+enum class LightSampling : std::uint8_t {
+  area,         ///< uniform on its surface
+  solid_angle,  ///< uniform in the solid angle it takes, warped to the cosine at the lit surface
+};
+
+/// How a ray finds the triangles that it may hit.
+enum class Traversal : std::uint8_t {
+  brute_force,  ///< by a test of every triangle
+  // Through a tree of which each PE loads the piece that its ray needs:
+  temporary_bin,  ///< rays wait in a bin between two pieces (paper, section 5)
+  refill,         ///< rays stay in their PE; idle PEs load new ones
+  lock_step,      ///< like refill, but waits until all PEs are idle
+  /// Through a tree that the control unit traverses for a block of rays at once.
+  packets,
+  /// Through a tree of which a block of rays shares the piece that all of them need.
+  shared_treelets,
+};
+
+inline constexpr int kMaxBuffers = 8;
+
+/// Limits far beyond what fits the chip; they keep slot numbers within 32 bits.
+inline constexpr int kMaxBinBlocks = 65536;
+inline constexpr int kMaxSlotVertices = 4096;
+
+/// Vertices of a path that one step of the radiance stage loads.
+inline constexpr int kVerticesPerLoad = 4;
+
+/// How the firmware is built and run; independent of the scene.
+struct ProgramConfig {
+  Program program = Program::full;
+  int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
+  bool buffer_loads = true;
+  bool buffer_saves = true;
+  int bin_blocks = 8;            ///< length of each bin in blocks of one SIMD width
+  int slot_vertices = 16;        ///< vertices a path slot holds; a multiple of kVerticesPerLoad
+  int roulette_start = 0;        ///< segments a path lives without roulette
+  double max_survival = 0.95;    ///< below 1, so that paths between white surfaces end
+  bool cull_shadow_rays = true;  ///< leave out those whose surface or light faces away
+  Sampler sampler = Sampler::philox;
+  LightSampling light_sampling = LightSampling::area;
+  std::uint64_t seed = 1;
+  /// Pixels from one camera ray to the next, cyclic over the film; must have no common divisor with the
+  /// number of pixels. The image is the same; only the distance between rays of one block changes.
+  int pixel_stride = 1;
+  Traversal traversal = Traversal::brute_force;
+  TreeShape tree;
+
+  bool uses_tree() const { return traversal != Traversal::brute_force; }
+  bool casts_shadow_rays() const { return program != Program::segments; }
+  bool buffers_loads() const { return buffer_loads && n > 0; }
+  bool buffers_saves() const { return buffer_saves && n > 0; }
+  int load_buffers() const { return buffers_loads() ? n + 1 : 1; }
+  int save_buffers() const { return buffers_saves() ? n + 1 : 1; }
+};
+
+/// Thrown for a configuration that is out of range or that the bins cannot hold; one line.
+class ProgramError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws ProgramError that names the option, the value and what is allowed. The options of a tree are
+/// checked only if the traversal uses one.
+void validate(const ProgramConfig& config);
+
+}  // namespace path_tracer

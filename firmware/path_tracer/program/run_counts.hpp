@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace path_tracer {
+
+/// A count by pass, in at most kMaxIntervals intervals of equally many passes; the last interval may be
+/// shorter. When there are too many intervals, two become one.
+class PassCounts {
+ public:
+  static constexpr std::size_t kMaxIntervals = 64;
+
+  void add(std::uint64_t count);
+
+  std::uint64_t passes() const { return passes_; }
+  std::uint64_t passes_per_interval() const { return passes_per_interval_; }
+  const std::vector<std::uint64_t>& intervals() const { return intervals_; }
+
+ private:
+  std::uint64_t passes_ = 0;
+  std::uint64_t passes_per_interval_ = 1;
+  std::vector<std::uint64_t> intervals_;
+};
+
+/// Counts of a tree traversal.
+struct TraversalCounts {
+  std::uint64_t leaf_loads = 0;     ///< rays that loaded a leaf
+  std::uint64_t treelet_loads = 0;  ///< rays that loaded a treelet
+  std::vector<std::uint64_t> rays;  ///< by pass or turn, from the one that takes rays out of the ray queue
+  std::vector<std::uint64_t>
+      lanes;  ///< by pass: PEs of the blocks that its rays filled; with refill all count as pass 0
+  /// Counts until 95 % of the rays in the ray queue were finished:
+  std::uint64_t rays_before_tail = 0;
+  std::uint64_t lanes_before_tail = 0;
+};
+
+/// Counts of the firmware; the chip has its own.
+struct RunCounts {
+  std::uint64_t paths = 0;
+  std::uint64_t segments = 0;
+  std::uint64_t shadow_rays = 0;
+  std::uint64_t folds = 0;           ///< times that a full slot was flushed
+  std::uint64_t blocks = 0;          ///< blocks of slots processed, over all passes
+  std::uint64_t skipped_blocks = 0;  ///< empty blocks of slots that were skipped
+  std::uint64_t steps = 0;
+  std::vector<std::uint64_t> paths_by_segments;  ///< [s]: paths that ended with s segments
+  PassCounts rays;                               ///< segments and shadow rays by pass
+  TraversalCounts traversal;
+};
+
+}  // namespace path_tracer

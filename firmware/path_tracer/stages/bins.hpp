@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "firmware/path_tracer/kernels/kernels.hpp"
+
+namespace path_tracer {
+
+/// The state of the bins outside mono memory: conditions that PEs hold for each block, and addresses that are
+/// kept in poly memory from one bin to the next (paper, section 3.3: "a small piece of data is kept in poly
+/// memory").
+struct Bins {
+  struct Block {
+    LaneMask live;  ///< slots that hold a path
+    LaneMask hit_something;
+    LaneMask shadow;  ///< slots whose ray is a shadow ray
+    LaneMask casts;   ///< slots whose next ray is a shadow ray
+    PolyField<MonoAddress> surface_place;
+    PolyField<MonoAddress> light_place;
+
+    LaneMask segments() const { return live.without(shadow); }  ///< slots whose ray is a segment
+    LaneMask ready() const { return live.without(casts); }      ///< slots whose vertex is complete
+  };
+  std::vector<Block> blocks;
+};
+
+/// Allocates the places of all blocks in poly memory.
+Bins make_bins(cn::PolyMemory& memory, int blocks);
+
+}  // namespace path_tracer

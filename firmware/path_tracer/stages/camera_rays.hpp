@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/path_tracer/program/work.hpp"
+
+namespace path_tracer {
+
+/// The camera rays still to be issued: sample by sample, and pixel by pixel within a sample.
+class CameraRays {
+ public:
+  CameraRays(const Work& work, int pixels);
+
+  std::int32_t next_pixel() const { return static_cast<std::int32_t>(next_ % std::uint64_t(pixels_)); }
+  std::int32_t next_sample() const {
+    return first_sample_ + static_cast<std::int32_t>(next_ / std::uint64_t(pixels_));
+  }
+  std::uint64_t remaining() const { return total_ - next_; }
+  int pixels() const { return pixels_; }
+  void issue(std::uint64_t count) { next_ += count; }
+  std::uint64_t issued() const { return next_; }
+
+ private:
+  std::uint64_t next_ = 0;
+  std::uint64_t total_;
+  std::int32_t first_sample_;
+  int pixels_;
+};
+
+}  // namespace path_tracer

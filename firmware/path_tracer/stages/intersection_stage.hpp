@@ -1,0 +1,47 @@
+#pragma once
+
+#include "firmware/path_tracer/stages/ray_store.hpp"
+#include "firmware/path_tracer/stages/stage.hpp"
+
+namespace path_tracer {
+
+/// Intersection stage. A segment gets its shading details, roulette, new direction and shadow ray; a shadow
+/// ray gets its light. A PE holds one or the other, so their records share SRAM.
+///
+/// Shadow rays go round the circular buffer like segments (paper, figure 1): a slot alternates between the
+/// two, and every block is full of whichever.
+class IntersectionStage : public Stage {
+ public:
+  /// @param rays where shadow rays go
+  IntersectionStage(const StageContext& context, RayStore& rays) : Stage(context), rays_(rays) {}
+  static int load_bytes(Program program);
+  static int save_bytes(const ProgramConfig& config);
+
+  const char* name() const override { return "intersection stage"; }
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int block) override;
+
+ private:
+  struct Loads {
+    PolyPointer<HitRecord> hit;
+    PolyPointer<SurfaceRecord> surface;
+    PolyPointer<PathRecord> path;  // segments
+    PolyPointer<LightRecord> light;
+    PolyPointer<LightingRecord> lighting;  // shadow rays
+  };
+  struct Saves {
+    PolyPointer<ScatterRecord> scatter;  // segments
+    PolyPointer<LightingRecord> lighting;
+    RayRoom shadow_ray;
+    PolyPointer<DirectLightRecord> direct_light;  // shadow rays
+  };
+  Loads loads(std::uint64_t step) const;
+  Saves saves(std::uint64_t step) const;
+  void scatter(const Loads& from, const Saves& to, int block);
+  void illuminate(const Loads& from, const Saves& to, int block);
+
+  RayStore& rays_;
+};
+
+}  // namespace path_tracer

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "firmware/path_tracer/stages/stage.hpp"
+
+namespace path_tracer {
+
+/// Ray stage of brute force: intersects each ray of the ray bin with every triangle, segments and shadow rays
+/// alike.
+class RayStage : public Stage {
+ public:
+  using Stage::Stage;
+  static constexpr int kLoadBytes = sizeof(RayRecord);
+  static constexpr int kSaveBytes = sizeof(HitRecord);
+
+  const char* name() const override { return "ray stage"; }
+  void load(std::uint64_t step, int block) override;
+  void process(std::uint64_t step, int block) override;
+  void save(std::uint64_t step, int block) override;
+
+ private:
+  Prefilter prefilter_;  ///< made when the triangles are first read
+};
+
+}  // namespace path_tracer

@@ -152,7 +152,7 @@ RenderResult render(const testbench::Scene& scene, const RenderOptions& options)
 
 std::string statistics(const RenderOptions& options, const RenderResult& result) {
   nlohmann::ordered_json json = testbench::render_statistics({"scene", options, false}, result);
-  json.erase("host");
+  json.erase("simulator");
   return json.dump(1);
 }
 

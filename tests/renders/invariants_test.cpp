@@ -45,7 +45,7 @@ class Invariants : public test_support::SystemCFixture {
 /// The statistics without the simulator's times.
 std::string statistics(const RenderOptions& options, const RenderResult& result) {
   nlohmann::ordered_json json = testbench::render_statistics({"scene", options, false}, result);
-  json.erase("host");
+  json.erase("simulator");
   return json.dump(1);
 }
 

@@ -112,7 +112,7 @@ void add_jobs_option(CLI::App& command, int& jobs) {
 void add_check_hazards_flag(CLI::App& command, bool& check_hazards) {
   command.add_flag(
       "--check-hazards", check_hazards,
-      "Stop when the firmware uses what a transfer may still read or write (kernels at level v2)");
+      "Stop when the firmware uses what a transfer may still read or write (with kernels built for that)");
 }
 
 Scene load_scene_for_film(const std::string& path, const std::string& size) {

@@ -28,7 +28,7 @@ struct RenderOptions {
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
   cn::Level level = cn::widest_level();
   ObservationOptions observation;  ///< on the chip only
-  bool check_hazards = false;  ///< with kernels built for it, at x86-64-v2 (model/hazards/hazard_checker.hpp)
+  bool check_hazards = false;  ///< with kernels that report their accesses (model/hazards/hazard_checker.hpp)
 };
 
 struct RenderResult {

@@ -1,210 +1,313 @@
 #include "testbench/scene/obj_mesh.hpp"
 
-#define TINYOBJLOADER_USE_DOUBLE  // must agree with the library linked: libtinyobjloader_double
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <optional>
-#include <sstream>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
 #include <string>
+#include <string_view>
 
-#include "testbench/scene/obj_numbers.hpp"
+#include "testbench/scene/mtl_file.hpp"
+#include "testbench/scene/text_lines.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {
 
-std::string read_text(const std::filesystem::path& file, const std::string& named_by) {
-  std::error_code error;
-  std::ifstream stream(file, std::ios::binary);
-  if (!std::filesystem::is_regular_file(file, error) || !stream) {
-    throw InputError(file.string() + ": cannot be read" + named_by + "; allowed: a readable file");
-  }
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (stream.bad() || !text)
-    throw InputError(file.string() + ": cannot be read to its end; allowed: a readable file");
-  return std::move(text).str();
-}
+constexpr std::int32_t kNoMaterial = -1;
 
-/// Passes MTL files to tinyobjloader, which maps names to indices, and keeps their checked colours in the
-/// same order.
-class CheckedMaterialReader : public tinyobj::MaterialReader {
- public:
-  explicit CheckedMaterialReader(std::filesystem::path obj_file) : obj_file_(std::move(obj_file)) {}
-
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* indices, std::string* /*warning*/,
-                  std::string* error) override {
-    const std::filesystem::path file = obj_file_.parent_path() / name;
-    const std::string text = read_text(file, " (named by mtllib in " + obj_file_.string() + ")");
-    const std::vector<Material> scanned = scan_materials(file, text);
-    materials_.insert(materials_.end(), scanned.begin(), scanned.end());
-    std::istringstream stream(text);
-    std::string ignored;  // LoadMtl warns only of transparency, which the renderer does not model
-    tinyobj::LoadMtl(indices, materials, &stream, &ignored, error);
-    if (materials->size() != materials_.size()) {
-      throw InputError(
-          file.string() + ": found " + std::to_string(scanned.size()) +
-          " materials where tinyobjloader found a different number; allowed: plain newmtl blocks");
-    }
-    return true;
-  }
-
-  std::vector<Material>& materials() { return materials_; }
-
- private:
-  std::filesystem::path obj_file_;
-  std::vector<Material> materials_;
+/// What the first pass over an OBJ text finds: all that faces refer to, before or behind them.
+struct ObjContent {
+  std::vector<glm::dvec3> vertices;
+  std::vector<glm::dvec3> colours;  ///< of the vertices, with NaN for one without; empty if none has one
+  std::vector<MtlMaterial> materials;
+  std::map<std::string, std::int32_t, std::less<>> material_of_name;
+  std::size_t faces = 0;
+  Notes notes;
 };
 
-using Polygon = std::vector<glm::dvec3>;
-
-glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  return glm::cross(b - a, c - a);
-}
-
-/// Whether the fan from vertex `start` covers the polygon with triangles that all face the same way as the
-/// polygon.
-bool is_fan_start(const Polygon& polygon, std::size_t start, const glm::dvec3& normal, double tolerance) {
-  const std::size_t count = polygon.size();
-  for (std::size_t i = 1; i + 1 < count; ++i) {
-    const glm::dvec3 area =
-        area_vector(polygon[start], polygon[(start + i) % count], polygon[(start + i + 1) % count]);
-    const double facing = glm::dot(area, normal);
-    if (!(tolerance == 0.0 ? facing > 0.0 : facing >= -tolerance * glm::dot(normal, normal))) return false;
-  }
-  return true;
-}
-
-/// The vertex whose fan triangulates the polygon, which is the first one for every convex polygon;
-/// std::nullopt if no fan does. A fan of proper triangles is preferred to one with collinear vertices.
-std::optional<std::size_t> fan_start(const Polygon& polygon) {
-  if (polygon.size() == 3) return 0;
-  glm::dvec3 normal(0.0);  // Newell's normal: twice the vector area, for any planar or bent polygon
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    normal += area_vector(polygon[0], polygon[i], polygon[i + 1]);
-  }
-  if (normal == glm::dvec3(0.0)) {  // a line, or a polygon that crosses itself and whose parts cancel
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-      if (!is_degenerate({{polygon[0], polygon[i], polygon[i + 1]}, 0})) return std::nullopt;
-    }
-    return 0;
-  }
-  for (const double tolerance : {0.0, 1e-12}) {
-    for (std::size_t start = 0; start < polygon.size(); ++start) {
-      if (is_fan_start(polygon, start, normal, tolerance)) return start;
-    }
-  }
-  return std::nullopt;
-}
-
-/// Converts tinyobjloader's polygons into triangles of a mesh.
-class MeshBuilder {
+/// A place in an OBJ file.
+class ObjPlace {
  public:
-  MeshBuilder(const std::filesystem::path& file, const std::vector<glm::dvec3>& vertices, Mesh& mesh)
-      : file_(file), vertices_(vertices), mesh_(mesh) {}
+  ObjPlace(const std::filesystem::path& file, const LineReader& lines) : file_(file), lines_(lines) {}
 
-  void add_shape(const tinyobj::shape_t& shape) {
-    std::size_t first_index = 0;
-    for (std::size_t face = 0; face < shape.mesh.num_face_vertices.size(); ++face) {
-      const std::size_t corners = shape.mesh.num_face_vertices[face];
-      polygon_.clear();
-      for (std::size_t corner = 0; corner < corners; ++corner) {
-        polygon_.push_back(vertex(shape, shape.mesh.indices[first_index + corner].vertex_index));
-      }
-      first_index += corners;
-      add_polygon(shape, shape.mesh.material_ids[face]);
-    }
+  std::string text() const { return file_.string() + ":" + std::to_string(lines_.number()); }
+
+  [[noreturn]] void fail(const std::string& what, std::string_view found, const std::string& allowed) const {
+    throw InputError(text() + ": " + (what.empty() ? "" : what + ": ") + "found " + in_quotes(found) +
+                     "; allowed: " + allowed);
   }
 
  private:
-  [[noreturn]] void fail(const tinyobj::shape_t& shape, const std::string& what) const {
-    throw InputError(file_.string() + ": object '" + shape.name + "': " + what);
+  const std::filesystem::path& file_;
+  const LineReader& lines_;
+};
+
+/// The first pass: vertices and material libraries.
+class ObjContentReader {
+ public:
+  ObjContentReader(const std::filesystem::path& file, std::string_view text, const FileReach& reach)
+      : file_(file), reach_(reach), lines_(text), place_(file, lines_) {}
+
+  ObjContent read() {
+    while (lines_.next()) {
+      std::string_view line = lines_.line();
+      const std::string_view keyword = take_word(line);
+      if (keyword == "v")
+        add_vertex(line);
+      else if (keyword == "f")
+        ++content_.faces;
+      else if (keyword == "mtllib")
+        add_libraries(line);
+    }
+    return std::move(content_);
   }
 
-  const glm::dvec3& vertex(const tinyobj::shape_t& shape, int index) const {
-    if (index < 0 || static_cast<std::size_t>(index) >= vertices_.size()) {
-      fail(shape, "found a face with vertex index " + std::to_string(index + 1) + "; allowed: 1 to " +
-                      std::to_string(vertices_.size()));
+ private:
+  /// x y z, x y z w, x y z r g b, or x y z r g b a. The weight w and the opacity a are not used.
+  void add_vertex(std::string_view line) {
+    const std::string_view found = trimmed(line = without_comment(line));
+    double numbers[7];
+    int count = 0;
+    for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
+      if (count == 7 || !(parse_number(word, numbers[count]) || is_no_number(word, numbers[count])))
+        fail_at_vertex(found);
+      ++count;
     }
-    return vertices_[static_cast<std::size_t>(index)];
+    if (count < 3 || count == 5 || (count == 4 && std::isnan(numbers[3]))) fail_at_vertex(found);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(numbers[axis]) <= kMaxCoordinate)) fail_at_vertex(found);
+    content_.vertices.emplace_back(numbers[0], numbers[1], numbers[2]);
+    if (count >= 6) add_colour({numbers[3], numbers[4], numbers[5]});
+    if (count < 6 && !content_.colours.empty()) content_.colours.emplace_back(NAN);
   }
 
-  void add_polygon(const tinyobj::shape_t& shape, int material) {
-    const std::optional<std::size_t> start = fan_start(polygon_);
-    if (!start) {
-      fail(shape, "found a face with " + std::to_string(polygon_.size()) +
-                      " vertices that no fan of triangles covers; allowed: convex polygons, or triangulate "
-                      "it on export");
+  /// A program that has no colour for a vertex may write nan.
+  static bool is_no_number(std::string_view word, double& value) {
+    value = NAN;
+    return word == "nan" || word == "-nan";
+  }
+
+  void add_colour(const glm::dvec3& colour) {
+    content_.colours.resize(content_.vertices.size() - 1, glm::dvec3(NAN));
+    const bool is_number = !std::isnan(colour.x + colour.y + colour.z);
+    if (!is_number)
+      content_.notes.add_at("a vertex colour that is no number is left out",
+                            [this] { return place_.text(); });
+    content_.colours.push_back(is_number ? colour : glm::dvec3(NAN));
+  }
+
+  [[noreturn]] void fail_at_vertex(std::string_view found) const {
+    place_.fail("vertex " + std::to_string(content_.vertices.size() + 1), found,
+                "3 finite numbers of at most 1e100, and none, one, 3 or 4 numbers behind them");
+  }
+
+  void add_libraries(std::string_view line) {
+    if (add_library(trimmed(line)) || add_library(trimmed(without_comment(line)))) return;
+    for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
+      if (!add_library(word))
+        content_.notes.add("an MTL file is missing", place_.text() + ": " + std::string(word.substr(0, 100)));
+  }
+
+  /// Returns false if there is no such file.
+  bool add_library(std::string_view name) {
+    std::string with_slashes(name);
+    std::replace(with_slashes.begin(), with_slashes.end(), '\\', '/');
+    for (const std::string& way : {std::string(name), with_slashes}) {
+      const std::filesystem::path library = file_.parent_path() / way;
+      if (way.empty() || !reach_.holds(library, place_.text() + ": mtllib")) continue;
+      if (read_libraries_.insert(library).second) add_materials(library);
+      return true;
     }
-    const std::size_t count = polygon_.size();
-    for (std::size_t i = 1; i + 1 < count; ++i) {
-      const Triangle triangle{
-          {polygon_[*start], polygon_[(*start + i) % count], polygon_[(*start + i + 1) % count]}, material};
-      if (is_degenerate(triangle)) {
-        ++mesh_.degenerate_triangles;
-      } else {
-        mesh_.triangles.push_back(triangle);
-      }
+    return false;
+  }
+
+  void add_materials(const std::filesystem::path& library) {
+    const std::string text = read_input_file(library, "a readable MTL file");
+    require_no_utf_16(library, text);
+    for (MtlMaterial& material : scan_materials(library, text)) {
+      const auto index = static_cast<std::int32_t>(content_.materials.size());
+      const std::string& name = material.material.name;
+      content_.material_of_name.emplace(name, index);
+      content_.material_of_name.emplace(trimmed(without_comment(name)), index);
+      content_.materials.push_back(std::move(material));
     }
   }
 
   const std::filesystem::path& file_;
-  const std::vector<glm::dvec3>& vertices_;
-  Mesh& mesh_;
-  Polygon polygon_;
+  const FileReach& reach_;
+  LineReader lines_;
+  ObjPlace place_;
+  ObjContent content_;
+  std::set<std::filesystem::path> read_libraries_;
 };
 
-void require_materials(const std::filesystem::path& file, const tinyobj::shape_t& shape) {
-  const std::vector<int>& ids = shape.mesh.material_ids;
-  if (std::any_of(ids.begin(), ids.end(), [](int id) { return id < 0; })) {
-    throw InputError(
-        file.string() + ": object '" + shape.name +
-        "': found a face without a material; allowed: faces after a usemtl that names one of the MTL file");
+/// The second pass: faces and their materials.
+class ObjFaceReader {
+ public:
+  ObjFaceReader(const std::filesystem::path& file, std::string_view text, const ObjContent& content,
+                const MeshOptions& options, Mesh& mesh)
+      : content_(content),
+        options_(options),
+        lines_(text),
+        place_(file, lines_),
+        mesh_(mesh),
+        builder_(mesh),
+        colour_materials_(materials_) {
+    for (const MtlMaterial& material : content.materials) materials_.push_back(material.material);
+    materials_.push_back(options.material.value_or(Material{"default", glm::dvec3(kDefaultReflectance)}));
+    default_material_ = static_cast<std::int32_t>(content.materials.size());
   }
-}
+
+  void read() {
+    mesh_.triangles.reserve(content_.faces);
+    while (lines_.next()) read_line(lines_.line());
+    note_left_out_of_materials();
+    keep_used_materials(materials_, mesh_);
+  }
+
+ private:
+  void read_line(std::string_view line) {
+    const std::string_view keyword = take_word(line);
+    if (keyword == "f")
+      add_face(line);
+    else if (keyword == "v")
+      ++vertices_so_far_;
+    else if (keyword == "usemtl")
+      use_material(line);
+    else if (keyword == "p")
+      note("a point is left out");
+    else if (keyword == "l")
+      note("a line is left out");
+    else if (keyword == "curv" || keyword == "curv2" || keyword == "surf")
+      note("a free-form curve or surface is left out");
+  }
+
+  void use_material(std::string_view line) {
+    material_name_ = trimmed(line);
+    auto found = content_.material_of_name.find(material_name_);
+    if (found == content_.material_of_name.end())
+      found = content_.material_of_name.find(trimmed(without_comment(line)));
+    material_ = found == content_.material_of_name.end() ? kNoMaterial : found->second;
+  }
+
+  void add_face(std::string_view line) {
+    polygon_.clear();
+    corners_.clear();
+    for (std::string_view corner = take_word(line); !corner.empty(); corner = take_word(line)) {
+      if (corner.front() == '#') break;
+      corners_.push_back(vertex_index(corner));
+      polygon_.push_back(content_.vertices[corners_.back()]);
+    }
+    if (polygon_.size() < 3)
+      place_.fail("face", std::to_string(polygon_.size()) + " corners", "3 corners or more");
+    builder_.add_polygon(polygon_, material_of_face(), [this] { return place_.text(); });
+  }
+
+  /// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0.
+  std::size_t vertex_index(std::string_view corner) const {
+    const char* const end = corner.data() + corner.size();
+    std::int64_t index = 0;
+    auto [rest, error] = std::from_chars(corner.data(), end, index);
+    const auto vertices = static_cast<std::int64_t>(content_.vertices.size());
+    const std::int64_t place = index < 0 ? static_cast<std::int64_t>(vertices_so_far_) + index : index - 1;
+    if (error != std::errc() || index == 0 || place < 0 || place >= vertices || !are_indices(rest, end))
+      fail_at_corner(corner);
+    return static_cast<std::size_t>(place);
+  }
+
+  /// Whether the text is empty or at most two whole numbers, which may be missing, each behind a slash.
+  static bool are_indices(const char* begin, const char* end) {
+    int slashes = 0;
+    while (begin != end) {
+      if (*begin++ != '/' || ++slashes > 2) return false;
+      const char* const number = begin != end && *begin == '-' ? begin + 1 : begin;
+      begin = std::find_if(number, end, [](char digit) { return digit < '0' || digit > '9'; });
+      if (begin == number && number[-1] == '-') return false;
+    }
+    return true;
+  }
+
+  [[noreturn]] void fail_at_corner(std::string_view corner) const {
+    const std::string vertices = std::to_string(content_.vertices.size());
+    const std::string behind = std::to_string(vertices_so_far_);
+    place_.fail("face", corner,
+                content_.vertices.empty()
+                    ? "none, the file holds no vertex"
+                    : "vertex 1 to " + vertices + (vertices_so_far_ > 0 ? ", or -1 to -" + behind : "") +
+                          ", as v, v/vt, v//vn or v/vt/vn");
+  }
+
+  std::int32_t material_of_face() {
+    const bool is_coloured =
+        !content_.colours.empty() &&
+        std::all_of(corners_.begin(), corners_.end(), [this](std::size_t vertex) {
+          return vertex < content_.colours.size() && !std::isnan(content_.colours[vertex].x);
+        });
+    if (material_ != kNoMaterial) {
+      if (is_coloured) note("vertex colours of a face with a material are left out");
+      return material_;
+    }
+    if (is_coloured) {
+      glm::dvec3 sum(0.0);
+      for (const std::size_t vertex : corners_) sum += content_.colours[vertex];
+      const glm::dvec3 colour = sum / double(corners_.size());
+      if (is_reflectance(colour)) return colour_materials_.index_of(colour, glm::dvec3(0.0));
+      note("vertex colours outside 0 to 1 are left out");
+    }
+    if (!options_.material) mesh_.note_default_material([this] { return why_default(); });
+    return default_material_;
+  }
+
+  void note(const char* text) {
+    mesh_.notes.add_at(text, [this] { return place_.text(); });
+  }
+
+  std::string why_default() const {
+    return place_.text() + ": no material" + (material_name_.empty() ? "" : " " + in_quotes(material_name_));
+  }
+
+  void note_left_out_of_materials() {
+    std::vector<bool> is_used(materials_.size(), false);
+    for (const Triangle& triangle : mesh_.triangles) is_used[std::size_t(triangle.material)] = true;
+    for (std::size_t i = 0; i < content_.materials.size(); ++i)
+      if (is_used[i]) mesh_.notes.add(content_.materials[i].notes);
+  }
+
+  const ObjContent& content_;
+  const MeshOptions& options_;
+  LineReader lines_;
+  ObjPlace place_;
+  Mesh& mesh_;
+  MeshBuilder builder_;
+  std::vector<Material> materials_;
+  ColourMaterials colour_materials_;
+  std::int32_t default_material_ = 0;
+  std::int32_t material_ = kNoMaterial;
+  std::string material_name_;
+  std::size_t vertices_so_far_ = 0;
+  Polygon polygon_;
+  std::vector<std::size_t> corners_;
+};
 
 }  // namespace
 
-Mesh load_obj_mesh(const std::filesystem::path& obj_file) {
-  const std::string text = read_text(obj_file, "");
-  const std::vector<glm::dvec3> vertices = scan_vertices(obj_file, text);
-
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> tinyobj_materials;
-  CheckedMaterialReader material_reader(obj_file);
-  std::string warning;
-  std::string error;
-  std::istringstream stream(text);
-  // MeshBuilder triangulates, because tinyobjloader cuts quads along the shorter diagonal even where it lies
-  // outside the quad.
-  const bool parsed =
-      tinyobj::LoadObj(&attributes, &shapes, &tinyobj_materials, &warning, &error, &stream, &material_reader,
-                       /*triangulate=*/false, /*default_vcols_fallback=*/false);
-  if (!parsed || !error.empty()) {
-    throw InputError(obj_file.string() + ": " + first_line(error) + "; allowed: a valid OBJ file");
-  }
-  if (attributes.vertices.size() != 3 * vertices.size()) {
-    throw InputError(obj_file.string() + ": found " + std::to_string(vertices.size()) + " vertices where " +
-                     "tinyobjloader found a different number; allowed: plain 'v x y z' lines");
-  }
-
+Mesh load_obj_mesh(const std::filesystem::path& obj_file, const MeshOptions& options) {
+  options.reach.require(obj_file, obj_file.string());
+  const std::string text = read_input_file(obj_file, "a readable OBJ file");
+  require_no_utf_16(obj_file, text);
+  ObjContent content = ObjContentReader(obj_file, text, options.reach).read();
   Mesh mesh;
-  MeshBuilder builder(obj_file, vertices, mesh);
-  for (const tinyobj::shape_t& shape : shapes) builder.add_shape(shape);
-  if (!warning.empty())
-    throw InputError(obj_file.string() + ": " + first_line(warning) + "; allowed: a valid OBJ file");
-  for (const tinyobj::shape_t& shape : shapes) require_materials(obj_file, shape);
-  if (mesh.triangles.empty()) {
-    throw InputError(obj_file.string() + ": found no triangle (" + std::to_string(mesh.degenerate_triangles) +
-                     " without area); allowed: a mesh of one triangle or more");
-  }
-  keep_used_materials(material_reader.materials(), mesh);
+  mesh.notes = std::move(content.notes);
+  ObjFaceReader(obj_file, text, content, options, mesh).read();
+  require_triangles(mesh, obj_file);
   return mesh;
+}
+
+Mesh load_obj_mesh(const std::filesystem::path& obj_file) {
+  return load_obj_mesh(obj_file, {FileReach(obj_file.parent_path()), std::nullopt});
 }
 
 }  // namespace testbench

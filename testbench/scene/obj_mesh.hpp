@@ -6,11 +6,23 @@
 
 namespace testbench {
 
-/// Reads an OBJ file and the MTL files that it names (relative to it). `Kd` is the reflectance, `Ke` the
-/// emitted radiance. Polygons are cut into fans from their first vertex, concave ones from the first vertex
-/// that sees all others. Throws InputError for an unreadable file, a missing MTL file or material, a bad
-/// index or number, Kd outside [0, 1], Ke outside [0, kMaxEmission], a texture, a polygon that no fan covers,
-/// or a file without faces.
+/// Reads an OBJ file and the MTL files that it names (relative to it; see scan_materials()).
+///
+/// Faces have any number of corners, see triangulate(). Indices of texture coordinates and normals are
+/// checked for their form only, since both are not used. A face without a material, or with one that no MTL
+/// file defines, has the average colour of its vertices (`v x y z r g b`, taken as linear reflectance) if all
+/// have one, otherwise the material of `options`, otherwise the default one (kDefaultReflectance). Noted as
+/// left out are points, lines, curves and surfaces, missing MTL files, vertex colours of faces that have a
+/// material, and what the materials in use leave out.
+///
+/// A name of a file or a material is the rest of its line; blanks in it are allowed. If no such file exists,
+/// the words of `mtllib` are each a file. A backslash in a file's name may stand for a slash.
+///
+/// Throws InputError for an unreadable file, a file out of reach, a bad index or number, a bad MTL file, or a
+/// file without triangles.
+Mesh load_obj_mesh(const std::filesystem::path& obj_file, const MeshOptions& options);
+
+/// The same with the files that lie below the OBJ file's folder.
 Mesh load_obj_mesh(const std::filesystem::path& obj_file);
 
 }  // namespace testbench

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "testbench/scene/notes.hpp"
+
 namespace testbench {
 
 /// A Lambertian surface. It emits from its front side only, the side from which its vertices run
@@ -51,6 +53,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Triangle> triangles;       ///< none of zero area
   std::size_t degenerate_triangles = 0;  ///< number of triangles of zero area that the loader dropped
+  Notes notes;                           ///< what the loader left out or replaced
 };
 
 }  // namespace testbench

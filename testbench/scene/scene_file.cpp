@@ -1,186 +1,48 @@
 #include "testbench/scene/scene_file.hpp"
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <initializer_list>
-#include <limits>
 #include <optional>
-#include <sstream>
 #include <string>
-#include <string_view>
 
+#include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/obj_mesh.hpp"
+#include "testbench/scene/ply_mesh.hpp"
+#include "testbench/scene/repeated_triangles.hpp"
+#include "testbench/scene/table_reader.hpp"
+#include "testbench/scene/text_lines.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {
 
-constexpr double kLargestDouble = std::numeric_limits<double>::max();
-
-/// Throws InputError. `where` is a file, or a file and a line.
-[[noreturn]] void fail(const std::string& where, std::string_view key, std::string_view found,
-                       std::string_view allowed) {
-  std::ostringstream message;
-  message << where << ": " << key << ": found " << found << "; allowed: " << allowed;
-  std::string line = message.str();
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  throw InputError(line);
+bool has_suffix(const std::filesystem::path& file, std::initializer_list<const char*> suffixes) {
+  const std::string suffix = lower_case(file.extension().string());
+  return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
 }
-
-std::string joined(std::initializer_list<const char*> words) {
-  std::string result;
-  for (const char* word : words) result += (result.empty() ? "" : ", ") + std::string(word);
-  return result;
-}
-
-/// One table of a scene.toml, with typed and checked access to its keys.
-class TableReader {
- public:
-  TableReader(std::string file, std::string name, const toml::table& table)
-      : file_(std::move(file)), name_(std::move(name)), table_(table) {}
-
-  void require_only(std::initializer_list<const char*> allowed) const {
-    for (const auto& [key, node] : table_) {
-      const auto matches = [&key_text = key](const char* word) { return key_text.str() == word; };
-      if (std::none_of(allowed.begin(), allowed.end(), matches)) {
-        fail(where(node), full_key(key.str()), "an unknown key", joined(allowed));
-      }
-    }
-  }
-
-  bool has(const char* key) const { return table_.contains(key); }
-
-  /// Whether the table holds the first of two groups of keys. Fails unless it holds one of them completely
-  /// and no key of the other.
-  bool has_first_of(std::initializer_list<const char*> first,
-                    std::initializer_list<const char*> second) const {
-    const auto present = [this](const char* key) { return has(key); };
-    const bool first_whole = std::all_of(first.begin(), first.end(), present);
-    const bool second_whole = std::all_of(second.begin(), second.end(), present);
-    const bool any_first = std::any_of(first.begin(), first.end(), present);
-    const bool any_second = std::any_of(second.begin(), second.end(), present);
-    if (first_whole && !any_second) return true;
-    if (second_whole && !any_first) return false;
-    std::string found;
-    for (const auto& group : {first, second}) {
-      for (const char* key : group) {
-        if (has(key)) found += (found.empty() ? "" : " and ") + std::string(key);
-      }
-    }
-    fail(where(table_), name_, found.empty() ? "neither form" : found,
-         "either " + joined(first) + " or " + joined(second));
-  }
-
-  /// A number in the open interval (low, high).
-  double number_between(const char* key, double low, double high) const {
-    const toml::node& node = require(key);
-    const std::optional<double> value = finite(node);
-    if (!value || *value <= low || *value >= high) {
-      std::ostringstream allowed;
-      allowed << "a number greater than " << low;
-      if (high < kLargestDouble) allowed << " and less than " << high;
-      fail(where(node), full_key(key), text_of(node), allowed.str());
-    }
-    return *value;
-  }
-
-  int pixels(const char* key) const {
-    if (!has(key)) return kDefaultFilmSide;
-    const toml::node& node = require(key);
-    const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
-    if (!value || *value < 1 || *value > kMaxFilmSide) {
-      fail(where(node), full_key(key), text_of(node),
-           "a whole number from 1 to " + std::to_string(kMaxFilmSide));
-    }
-    return static_cast<int>(*value);
-  }
-
-  glm::dvec3 vector(const char* key) const {
-    const toml::node& node = require(key);
-    const toml::array* array = node.as_array();
-    glm::dvec3 result(0.0);
-    bool good = array != nullptr && array->size() == 3;
-    for (std::size_t axis = 0; good && axis < 3; ++axis) {
-      const std::optional<double> value = finite((*array)[axis]);
-      good = value && std::abs(*value) <= kMaxCoordinate;
-      if (good) result[static_cast<int>(axis)] = *value;
-    }
-    if (!good)
-      fail(where(node), full_key(key), text_of(node), "three finite numbers [x, y, z] of at most 1e100");
-    return result;
-  }
-
-  glm::dvec3 vector_or(const char* key, const glm::dvec3& otherwise) const {
-    return has(key) ? vector(key) : otherwise;
-  }
-
-  std::string text(const char* key) const {
-    const toml::node& node = require(key);
-    const std::optional<std::string> value = node.value_exact<std::string>();
-    if (!value || value->empty()) fail(where(node), full_key(key), text_of(node), "a file name in quotes");
-    return *value;
-  }
-
-  /// Fails at the line of `key`, or at the line of the table if it has no such key.
-  [[noreturn]] void fail_at(const char* key, std::string_view found, std::string_view allowed) const {
-    const toml::node* node = table_.get(key);
-    fail(node != nullptr ? where(*node) : where(table_), full_key(key), found, allowed);
-  }
-
-  std::string text_of(const char* key) const { return text_of(require(key)); }
-
- private:
-  static std::optional<double> finite(const toml::node& node) {
-    if (!node.is_number()) return std::nullopt;
-    const std::optional<double> value = node.value<double>();
-    if (!value || !std::isfinite(*value)) return std::nullopt;
-    return value;
-  }
-
-  static std::string text_of(const toml::node& node) {
-    std::ostringstream text;
-    text << toml::toml_formatter{node};
-    return text.str();
-  }
-
-  const toml::node& require(const char* key) const {
-    const toml::node* node = table_.get(key);
-    if (node == nullptr) fail(where(table_), full_key(key), "none", "this key is required");
-    return *node;
-  }
-
-  std::string where(const toml::node& node) const {
-    const auto line = node.source().begin.line;
-    return line > 0 ? file_ + ":" + std::to_string(line) : file_;
-  }
-
-  std::string full_key(std::string_view key) const {
-    return name_.empty() ? std::string(key) : name_ + "." + std::string(key);
-  }
-
-  std::string file_;
-  std::string name_;
-  const toml::table& table_;
-};
 
 bool is_gltf(const std::filesystem::path& file) {
-  return file.extension() == ".gltf" || file.extension() == ".glb";
+  return has_suffix(file, {".gltf", ".glb"});
 }
 
-constexpr const char* kSceneFiles = "a directory that holds scene.toml, or a .toml, .gltf or .glb file";
+bool is_ply(const std::filesystem::path& file) {
+  return has_suffix(file, {".ply"});
+}
+
+constexpr const char* kSceneFiles =
+    "a directory that holds scene.toml, or a .toml, .obj, .ply, .gltf or .glb file";
 
 std::filesystem::path scene_path(const std::filesystem::path& scene) {
   std::error_code error;
   std::filesystem::path file = std::filesystem::is_directory(scene, error) ? scene / "scene.toml" : scene;
   if (!std::filesystem::is_regular_file(file, error)) {
-    fail(scene.string(), "scene", "no file " + file.string(), kSceneFiles);
+    fail_at_key(scene.string(), "scene", "no file " + file.string(), kSceneFiles);
   }
-  if (file.extension() != ".toml" && !is_gltf(file)) {
-    fail(scene.string(), "scene", "a file named " + file.filename().string(), kSceneFiles);
+  if (!has_suffix(file, {".toml", ".obj", ".ply", ".gltf", ".glb"})) {
+    fail_at_key(scene.string(), "scene", "a file named " + file.filename().string(), kSceneFiles);
   }
   return file;
 }
@@ -190,8 +52,8 @@ toml::table parse_toml(const std::filesystem::path& file) {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
     const auto line = error.source().begin.line;
-    fail(line > 0 ? file.string() + ":" + std::to_string(line) : file.string(), "TOML", error.description(),
-         "a readable file in valid TOML");
+    fail_at_key(line > 0 ? file.string() + ":" + std::to_string(line) : file.string(), "TOML",
+                error.description(), "a readable file in valid TOML");
   }
 }
 
@@ -247,9 +109,21 @@ glm::dmat4 read_transform(const TableReader& table) {
   return glm::scale(transform, glm::dvec3(scale));
 }
 
-GltfFile load_mesh_file(const std::filesystem::path& file) {
+GltfFile load_mesh_file(const std::filesystem::path& file, const MeshOptions& options) {
   if (is_gltf(file)) return load_gltf(file);
-  return {load_obj_mesh(file), std::nullopt};
+  return {is_ply(file) ? load_ply_mesh(file, options) : load_obj_mesh(file, options), std::nullopt};
+}
+
+/// The material that faces without one get.
+std::optional<Material> read_material(const TableReader& mesh) {
+  if (!mesh.has("material")) return std::nullopt;
+  if (is_gltf(mesh.text("file")))
+    mesh.fail_at("material", "a material for a glTF file",
+                 "one for OBJ and PLY files; glTF has a default of its own");
+  const TableReader table = mesh.table("material");
+  table.require_only({"reflectance", "emission"});
+  return Material{"material", table.colour_or_black("reflectance", 1.0, "three numbers from 0 to 1"),
+                  table.colour_or_black("emission", kMaxEmission, "three numbers from 0 to 1e12")};
 }
 
 Camera moved(Camera camera, const glm::dmat4& transform) {
@@ -261,17 +135,21 @@ Camera moved(Camera camera, const glm::dmat4& transform) {
 
 /// Adds the mesh file that `table` names.
 /// @param camera set to the file's camera if it has one and `camera` is empty
-void add_mesh(const TableReader& table, const std::filesystem::path& directory, Scene& scene,
-              std::optional<Camera>& camera) {
-  table.require_only({"file", "scale", "rotate_degrees", "translate"});
+/// Returns whether the mesh has faces of the default material.
+bool add_mesh(const TableReader& table, const std::filesystem::path& directory, const FileReach& reach,
+              Scene& scene, std::optional<Camera>& camera) {
+  table.require_only({"file", "scale", "rotate_degrees", "translate", "material"});
   const bool is_moved = table.has("scale") || table.has("rotate_degrees") || table.has("translate");
   const glm::dmat4 transform = read_transform(table);
-  const GltfFile file = load_mesh_file(directory / table.text("file"));
+  const std::filesystem::path mesh_file = directory / table.text("file");
+  reach.require(mesh_file, table.where_is("file") + ": mesh.file");
+  const GltfFile file = load_mesh_file(mesh_file, {reach, read_material(table)});
   if (file.camera && !camera) camera = moved(file.camera->camera, transform);
   const Mesh& mesh = file.mesh;
   const auto first_material = static_cast<std::int32_t>(scene.materials.size());
   scene.materials.insert(scene.materials.end(), mesh.materials.begin(), mesh.materials.end());
   scene.degenerate_triangles += mesh.degenerate_triangles;
+  scene.notes.add(mesh.notes);
   scene.triangles.reserve(scene.triangles.size() + mesh.triangles.size());
   for (Triangle triangle : mesh.triangles) {
     triangle.material += first_material;
@@ -288,13 +166,14 @@ void add_mesh(const TableReader& table, const std::filesystem::path& directory, 
     }
     scene.triangles.push_back(triangle);
   }
+  return mesh.has_default_material;
 }
 
 TableReader subtable(const toml::table& root, const std::string& file, const char* name) {
   const toml::node* node = root.get(name);
   const std::string allowed = std::string("one [") + name + "] table";
-  if (node == nullptr) fail(file, name, "none", allowed);
-  if (!node->is_table()) fail(file, name, "no table", allowed);
+  if (node == nullptr) fail_at_key(file, name, "none", allowed);
+  if (!node->is_table()) fail_at_key(file, name, "no table", allowed);
   return TableReader(file, name, *node->as_table());
 }
 
@@ -305,52 +184,67 @@ FilmSize read_film(const toml::table& root, const std::string& file) {
   return {film.pixels("width"), film.pixels("height")};
 }
 
-std::optional<Camera> add_meshes(const toml::table& root, const std::filesystem::path& file, Scene& scene) {
+/// What the mesh files of a scene.toml bring along besides triangles.
+struct OfMeshes {
+  std::optional<Camera> camera;
+  bool has_default_material = false;
+};
+
+OfMeshes add_meshes(const toml::table& root, const std::filesystem::path& file, bool is_outside_allowed,
+                    Scene& scene) {
   const toml::array* meshes = root.get_as<toml::array>("mesh");
   if (meshes == nullptr || meshes->empty() || !meshes->is_array_of_tables()) {
-    fail(file.string(), "mesh", root.contains("mesh") ? "no array of tables" : "none",
-         "one [[mesh]] table or more");
+    fail_at_key(file.string(), "mesh", root.contains("mesh") ? "no array of tables" : "none",
+                "one [[mesh]] table or more");
   }
-  std::optional<Camera> camera;
+  const FileReach reach(file.parent_path(), is_outside_allowed);
+  OfMeshes result;
   for (const toml::node& node : *meshes) {
-    add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), scene, camera);
+    if (add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), reach, scene,
+                 result.camera))
+      result.has_default_material = true;
   }
-  return camera;
+  return result;
 }
 
 void require_renderable(const Scene& scene, const std::string& file) {
-  if (scene.triangles.empty()) fail(file, "mesh", "no triangle with an area", "one or more");
-  const auto emits = [&scene](const Triangle& triangle) {
-    return scene.materials[static_cast<std::size_t>(triangle.material)].emission != glm::dvec3(0.0);
-  };
-  if (std::none_of(scene.triangles.begin(), scene.triangles.end(), emits)) {
-    fail(file, "mesh", "no light",
-         "one triangle or more with a material that emits (OBJ: Ke, glTF: emissiveFactor)");
+  if (scene.triangles.empty()) fail_at_key(file, "mesh", "no triangle with an area", "one or more");
+  if (!has_light(scene)) {
+    fail_at_key(file, "mesh", "no light",
+                "one triangle or more with a material that emits (OBJ: Ke, glTF: emissiveFactor)");
   }
 }
 
-/// The scene of a glTF file that is opened directly, without a scene.toml.
-Scene gltf_scene(const std::filesystem::path& file) {
-  GltfFile gltf = load_gltf(file);
-  if (!gltf.camera) fail(file.string(), "camera", "none", "one that a node of the scene holds");
+void add_light_with_note(Scene& scene, const std::filesystem::path& file) {
+  add_default_light(scene);
+  scene.notes.add("no triangle emits, so a square light above and behind the camera is added", file.string());
+}
+
+/// The scene of a mesh file that is opened directly, without a scene.toml.
+Scene mesh_scene(const std::filesystem::path& file, bool is_outside_allowed) {
+  GltfFile mesh_file =
+      load_mesh_file(file, {FileReach(file.parent_path(), is_outside_allowed), std::nullopt});
   Scene scene;
   scene.name = file.stem().string();
-  scene.camera = gltf.camera->camera;
   scene.film = {kDefaultFilmSide, kDefaultFilmSide};
-  const double width = kDefaultFilmSide * gltf.camera->aspect_ratio.value_or(1.0);
-  scene.film.width = static_cast<int>(std::clamp(std::round(width), 1.0, double(kMaxFilmSide)));
-  scene.materials = std::move(gltf.mesh.materials);
-  scene.triangles = std::move(gltf.mesh.triangles);
-  scene.degenerate_triangles = gltf.mesh.degenerate_triangles;
-  require_renderable(scene, file.string());
+  scene.materials = std::move(mesh_file.mesh.materials);
+  scene.triangles = std::move(mesh_file.mesh.triangles);
+  scene.degenerate_triangles = mesh_file.mesh.degenerate_triangles;
+  scene.notes = std::move(mesh_file.mesh.notes);
+  if (mesh_file.camera) {
+    scene.camera = mesh_file.camera->camera;
+    const double width = kDefaultFilmSide * mesh_file.camera->aspect_ratio.value_or(1.0);
+    scene.film.width = static_cast<int>(std::clamp(std::round(width), 1.0, double(kMaxFilmSide)));
+  } else {
+    scene.camera = framing_camera(scene);
+    scene.notes.add("no camera, so one that sees the whole mesh is used", file.string());
+    if (!has_light(scene)) add_light_with_note(scene, file);
+  }
   return scene;
 }
 
-}  // namespace
-
-Scene load_scene(const std::filesystem::path& path) {
-  const std::filesystem::path file = scene_path(path);
-  if (is_gltf(file)) return gltf_scene(file);
+/// The scene of a scene.toml.
+Scene toml_scene(const std::filesystem::path& file, bool is_outside_allowed) {
   const toml::table root = parse_toml(file);
   TableReader(file.string(), "", root).require_only({"camera", "film", "mesh"});
 
@@ -360,10 +254,24 @@ Scene load_scene(const std::filesystem::path& path) {
   scene.film = read_film(root, file.string());
   std::optional<Camera> camera;
   if (root.contains("camera")) camera = read_camera(subtable(root, file.string(), "camera"));
-  const std::optional<Camera> of_mesh = add_meshes(root, file, scene);
-  if (!camera) camera = of_mesh;
-  if (!camera) fail(file.string(), "camera", "none", "one [camera] table, or a mesh file that holds one");
+  const OfMeshes of_meshes = add_meshes(root, file, is_outside_allowed, scene);
+  if (!camera) camera = of_meshes.camera;
+  if (!camera)
+    fail_at_key(file.string(), "camera", "none", "one [camera] table, or a mesh file that holds one");
   scene.camera = *camera;
+  if (of_meshes.has_default_material && !has_light(scene)) add_light_with_note(scene, file);
+  return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
+  const std::filesystem::path file = scene_path(path);
+  Scene scene = has_suffix(file, {".toml"}) ? toml_scene(file, is_outside_allowed)
+                                            : mesh_scene(file, is_outside_allowed);
+  scene.notes.add("a triangle without area is left out", file.string(), scene.degenerate_triangles);
+  scene.notes.add("a triangle that repeats another one is left out", file.string(),
+                  remove_repeated_triangles(scene));
   require_renderable(scene, file.string());
   return scene;
 }

@@ -13,6 +13,8 @@ std::string read_input_file(const std::filesystem::path& path, const std::string
   std::ostringstream bytes;
   std::ifstream stream(path, std::ios::binary);
   const bool is_directory = std::filesystem::is_directory(path);
+  const bool is_empty = stream && !is_directory && stream.peek() == std::ifstream::traits_type::eof();
+  if (is_empty) return "";
   if (!stream || is_directory || !(bytes << stream.rdbuf()))
     throw InputError(path.string() + ": found that it cannot be read (" +
                      system_message(is_directory ? EISDIR : errno) + "); allowed: " + allowed);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <glm/gtc/constants.hpp>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -185,9 +187,131 @@ TEST_F(SceneFileTest, refuses_broken_or_missing_files) {
   expect_error("a = 1\na = 2\n", {"scene.toml:2", "TOML"});
   expect_error("a = \"\xff\xfe\"\n", {"scene.toml", "TOML"});
   expect_error_of(directory_ / "gone", {"gone"});
-  expect_error_of(directory_ / "a.obj", {"a.obj", ".toml"});
+  expect_error_of(write("a.stl", ""), {"a.stl", ".toml"});
   std::filesystem::remove(directory_ / "scene.toml");
   expect_error_of(directory_, {"scene.toml"});
+}
+
+TEST_F(SceneFileTest, a_byte_order_mark_before_the_file_is_skipped) {
+  EXPECT_EQ(load("\xef\xbb\xbf" + std::string(kCamera) + kMesh).triangles.size(), 1U);
+}
+
+TEST_F(SceneFileTest, a_material_is_for_faces_that_have_none) {
+  write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("bare.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nelement face "
+        "1\nproperty list uchar int vertex_index\nend_header\n0 0 1\n1 0 1\n0 1 1\n3 0 1 2\n");
+  const Scene scene =
+      load(std::string(kCamera) +
+           "[[mesh]]\nfile = \"bare.obj\"\nmaterial = {reflectance = [0.1, 0.2, 1], emission = [5, 0, "
+           "1e12]}\n[[mesh]]\nfile = \"bare.ply\"\nmaterial.emission = [1, 1, 1]\n[[mesh]]\nfile = "
+           "\"a.obj\"\nmaterial.emission = [9, 9, 9]\n");
+  ASSERT_EQ(scene.materials.size(), 3U);
+  EXPECT_EQ(scene.materials[0].reflectance, glm::dvec3(0.1, 0.2, 1.0));
+  EXPECT_EQ(scene.materials[0].emission, glm::dvec3(5, 0, 1e12));
+  EXPECT_EQ(scene.materials[1].reflectance, glm::dvec3(0));
+  EXPECT_EQ(scene.materials[2].emission, glm::dvec3(1));
+  EXPECT_TRUE(scene.notes.lines().empty());
+  const std::string mesh = std::string(kCamera) + "[[mesh]]\nfile = \"bare.obj\"\n";
+  expect_error(mesh + "material = 3\n", {"scene.toml:7", "mesh.material", "a table"});
+  expect_error(mesh + "material = {colour = 3}\n", {"mesh.material.colour", "reflectance, emission"});
+  expect_error(mesh + "material.reflectance = [0, 0, 1.5]\n", {"mesh.material.reflectance", "1.5", "0 to 1"});
+  expect_error(mesh + "material.emission = [-1, 0, 0]\n", {"mesh.material.emission", "-1", "1e12"});
+}
+
+TEST_F(SceneFileTest, a_scene_of_the_default_material_without_light_gets_one) {
+  write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Scene scene = load(std::string(kCamera) + "[[mesh]]\nfile = \"bare.obj\"\n");
+  EXPECT_EQ(scene.triangles.size(), 3U);
+  ASSERT_EQ(scene.notes.lines().size(), 2U);
+  EXPECT_NE(scene.notes.lines()[1].find("square light"), std::string::npos);
+}
+
+TEST_F(SceneFileTest, a_mesh_file_alone_is_framed_and_lit) {
+  const std::string file = "s 0\nv -30 10 4\nv 10 10 4\nv 10 90 -5\nv -30 90 -5\nf 1 2 3 4\n";
+  for (const char* name : {"m.obj", "M.OBJ"}) {
+    const Scene scene = load_scene(write(name, file));
+    EXPECT_EQ(scene.name.size(), 1U);
+    EXPECT_EQ(scene.film.width, 480);
+    ASSERT_EQ(scene.triangles.size(), 4U);
+    ASSERT_EQ(scene.notes.lines().size(), 3U);
+    const testbench::Camera& camera = scene.camera;
+    EXPECT_NEAR(glm::length(camera.direction), 1.0, 1e-12);
+    EXPECT_NEAR(glm::dot(camera.direction, camera.up), 0.0, 1e-12);
+    const double half = 0.5 * camera.vertical_field_of_view_radians;
+    for (int t = 0; t < 2; ++t) {
+      for (const glm::dvec3& v : scene.triangles[std::size_t(t)].vertex)
+        EXPECT_GT(glm::dot(glm::normalize(v - camera.position), camera.direction), std::cos(half));
+    }
+    const glm::dvec3 centre(-10, 50, -0.5);
+    for (int t = 2; t < 4; ++t) {
+      const auto& light = scene.triangles[std::size_t(t)];
+      EXPECT_GT(scene.materials[std::size_t(light.material)].emission.x, 0.0);
+      const glm::dvec3 normal =
+          glm::cross(light.vertex[1] - light.vertex[0], light.vertex[2] - light.vertex[0]);
+      EXPECT_GT(glm::dot(centre - light.vertex[0], normal), 0.0);  // faces the mesh
+      EXPECT_LT(glm::dot(light.vertex[0] - camera.position, camera.direction), 0.0) << "seen by the camera";
+    }
+  }
+}
+
+TEST_F(SceneFileTest, a_mesh_file_that_emits_gets_no_light) {
+  EXPECT_EQ(load_scene(directory_ / "a.obj").triangles.size(), 1U);
+}
+
+TEST_F(SceneFileTest, suffixes_count_in_any_case) {
+  std::filesystem::rename(directory_ / "a.obj", directory_ / "A.Obj");
+  EXPECT_EQ(load(std::string(kCamera) + "[[mesh]]\nfile = \"A.Obj\"\n").triangles.size(), 1U);
+  std::filesystem::rename(directory_ / "scene.toml", directory_ / "OTHER.TOML");
+  EXPECT_EQ(load_scene(directory_ / "OTHER.TOML").triangles.size(), 1U);
+}
+
+TEST_F(SceneFileTest, reads_no_file_outside_its_folder_unless_allowed) {
+  std::filesystem::create_directories(directory_ / "in/below");
+  std::filesystem::create_symlink(directory_ / "a.obj", directory_ / "in/link.obj");
+  for (const std::string& file :
+       {std::string("../a.obj"), std::string("below/../../a.obj"), std::string("link.obj"),
+        (directory_ / "a.obj").string(), std::string("/dev/zero")}) {
+    const auto toml = write("in/scene.toml", std::string(kCamera) + "[[mesh]]\nfile = \"" + file + "\"\n");
+    expect_error_of(toml, {"scene.toml:6: mesh.file", "outside", "--allow-outside"});
+    if (file != "/dev/zero") {
+      EXPECT_EQ(load_scene(toml, true).triangles.at(0).vertex[0], glm::dvec3(1, 0, 0));
+    } else {
+      test_support::expect_input_error([&] { load_scene(toml, true); }, {"/dev/zero", "a regular file"});
+    }
+  }
+  std::filesystem::rename(directory_ / "a.obj", directory_ / "in/below/a.obj");
+  std::filesystem::rename(directory_ / "a.mtl", directory_ / "in/a.mtl");
+  write("in/below/a.obj", "mtllib ../a.mtl\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl lamp\nf 1 2 3\n");
+  const auto toml = write("in/scene.toml", std::string(kCamera) + "[[mesh]]\nfile = \"below/a.obj\"\n");
+  EXPECT_EQ(load_scene(toml).materials.at(0).name, "lamp");  // ../a.mtl is below the scene's folder
+}
+
+// A light that is listed twice would be sampled twice and hit once.
+TEST_F(SceneFileTest, a_triangle_that_repeats_another_is_left_out) {
+  write("a.mtl", "newmtl lamp\nKe 1 1 1\nnewmtl wall\nKd 0.5 0.5 0.5\n");
+  const std::string vertices = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 -0 0\nv 0 0 5\n";
+  write("a.obj",
+        vertices +
+            "usemtl wall\nf 3 1 2\nf 1 2 5\nusemtl lamp\nf 1 2 3\nf 2 3 4\nf 3 2 1\nusemtl wall\nf 2 3 1\n");
+  const Scene scene = load(std::string(kCamera) + kMesh + kMesh);
+  // Three are left: the lamp, its back, and the wall up to vertex 5.
+  ASSERT_EQ(scene.triangles.size(), 3U);
+  EXPECT_EQ(scene.triangles[0].vertex[2], glm::dvec3(0, 0, 5));
+  EXPECT_EQ(scene.materials.at(std::size_t(scene.triangles[1].material)).name, "lamp");
+  EXPECT_EQ(scene.triangles[1].vertex[0], glm::dvec3(0, 0, 0));
+  EXPECT_EQ(scene.triangles[2].vertex[0], glm::dvec3(0, 1, 0));
+  EXPECT_EQ(scene.notes.lines(),
+            std::vector<std::string>{(directory_ / "scene.toml").string() +
+                                     ": a triangle that repeats another one is left out, 9 times"});
+}
+
+TEST(Scenes, TheClosedCornellBoxHoldsCopiesOfTheOpenOne) {
+  const std::filesystem::path scenes = CSX600_SCENES_DIR;
+  for (const char* file : {"cornell_box.obj", "cornell_box.mtl"})
+    EXPECT_EQ(testbench::read_input_file(scenes / "cornell_box" / file, ""),
+              testbench::read_input_file(scenes / "cornell_box_closed" / file, ""));
 }
 
 }  // namespace scene_file_test

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace testbench {
+
+using Polygon = std::vector<glm::dvec3>;
+
+/// The triangles of a polygon. All face the way the polygon does.
+struct PolygonTriangles {
+  std::vector<std::array<glm::dvec3, 3>> triangles;
+  bool crosses_itself = false;
+};
+
+/// Appends the triangles of a polygon to `result.triangles`; some may have no area. A convex polygon is cut
+/// into a fan from its first vertex. A polygon of at most 255 vertices, of which one sees all others, is cut
+/// into a fan from the first of those. Any other is projected along the axis in which it has the least extent
+/// and tessellated there (GLU, sweep line); where it crosses itself, what its outline goes around is filled.
+/// @param polygon 3 vertices or more, each coordinate of at most kMaxCoordinate; bent ones are allowed
+/// Sets result.crosses_itself if it does and no fan covers it. Throws RunError if memory runs out.
+void triangulate(const Polygon& polygon, PolygonTriangles& result);
+
+}  // namespace testbench

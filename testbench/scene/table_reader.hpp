@@ -1,0 +1,190 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "testbench/scene/mesh.hpp"
+#include "testbench/scene/scene.hpp"
+#include "testbench/system/error.hpp"
+
+namespace testbench {
+
+inline constexpr double kLargestDouble = std::numeric_limits<double>::max();
+
+/// Throws InputError. `where` is a file, or a file and a line.
+[[noreturn]] inline void fail_at_key(const std::string& where, std::string_view key, std::string_view found,
+                                     std::string_view allowed) {
+  std::ostringstream message;
+  message << where << ": " << key << ": found " << found << "; allowed: " << allowed;
+  std::string line = message.str();
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  throw InputError(line);
+}
+
+inline std::string joined(std::initializer_list<const char*> words) {
+  std::string result;
+  for (const char* word : words) result += (result.empty() ? "" : ", ") + std::string(word);
+  return result;
+}
+
+/// One table of a scene.toml, with typed and checked access to its keys.
+class TableReader {
+ public:
+  TableReader(std::string file, std::string name, const toml::table& table)
+      : file_(std::move(file)), name_(std::move(name)), table_(table) {}
+
+  void require_only(std::initializer_list<const char*> allowed) const {
+    for (const auto& [key, node] : table_) {
+      const auto matches = [&key_text = key](const char* word) { return key_text.str() == word; };
+      if (std::none_of(allowed.begin(), allowed.end(), matches)) {
+        fail_at_key(where(node), full_key(key.str()), "an unknown key", joined(allowed));
+      }
+    }
+  }
+
+  bool has(const char* key) const { return table_.contains(key); }
+
+  /// Whether the table holds the first of two groups of keys. Fails unless it holds one of them completely
+  /// and no key of the other.
+  bool has_first_of(std::initializer_list<const char*> first,
+                    std::initializer_list<const char*> second) const {
+    const auto present = [this](const char* key) { return has(key); };
+    const bool first_whole = std::all_of(first.begin(), first.end(), present);
+    const bool second_whole = std::all_of(second.begin(), second.end(), present);
+    const bool any_first = std::any_of(first.begin(), first.end(), present);
+    const bool any_second = std::any_of(second.begin(), second.end(), present);
+    if (first_whole && !any_second) return true;
+    if (second_whole && !any_first) return false;
+    std::string found;
+    for (const auto& group : {first, second}) {
+      for (const char* key : group) {
+        if (has(key)) found += (found.empty() ? "" : " and ") + std::string(key);
+      }
+    }
+    fail_at_key(where(table_), name_, found.empty() ? "neither form" : found,
+                "either " + joined(first) + " or " + joined(second));
+  }
+
+  /// A number in the open interval (low, high).
+  double number_between(const char* key, double low, double high) const {
+    const toml::node& node = require(key);
+    const std::optional<double> value = finite(node);
+    if (!value || *value <= low || *value >= high) {
+      std::ostringstream allowed;
+      allowed << "a number greater than " << low;
+      if (high < kLargestDouble) allowed << " and less than " << high;
+      fail_at_key(where(node), full_key(key), text_of(node), allowed.str());
+    }
+    return *value;
+  }
+
+  int pixels(const char* key) const {
+    if (!has(key)) return kDefaultFilmSide;
+    const toml::node& node = require(key);
+    const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
+    if (!value || *value < 1 || *value > kMaxFilmSide) {
+      fail_at_key(where(node), full_key(key), text_of(node),
+                  "a whole number from 1 to " + std::to_string(kMaxFilmSide));
+    }
+    return static_cast<int>(*value);
+  }
+
+  glm::dvec3 vector(const char* key) const {
+    const toml::node& node = require(key);
+    const toml::array* array = node.as_array();
+    glm::dvec3 result(0.0);
+    bool good = array != nullptr && array->size() == 3;
+    for (std::size_t axis = 0; good && axis < 3; ++axis) {
+      const std::optional<double> value = finite((*array)[axis]);
+      good = value && std::abs(*value) <= kMaxCoordinate;
+      if (good) result[static_cast<int>(axis)] = *value;
+    }
+    if (!good)
+      fail_at_key(where(node), full_key(key), text_of(node),
+                  "three finite numbers [x, y, z] of at most 1e100");
+    return result;
+  }
+
+  glm::dvec3 vector_or(const char* key, const glm::dvec3& otherwise) const {
+    return has(key) ? vector(key) : otherwise;
+  }
+
+  /// Three numbers from 0 to `high`; 0 without the key.
+  glm::dvec3 colour_or_black(const char* key, double high, const char* allowed) const {
+    const glm::dvec3 result = vector_or(key, glm::dvec3(0.0));
+    for (int channel = 0; channel < 3; ++channel)
+      if (!(result[channel] >= 0.0 && result[channel] <= high)) fail_at(key, text_of(key), allowed);
+    return result;
+  }
+
+  /// The table that the key holds.
+  TableReader table(const char* key) const {
+    const toml::node& node = require(key);
+    if (!node.is_table())
+      fail_at_key(where(node), full_key(key), text_of(node), "a table {key = value, ...}");
+    return TableReader(file_, full_key(key), *node.as_table());
+  }
+
+  /// File and line of a key, for messages.
+  std::string where_is(const char* key) const { return where(require(key)); }
+
+  std::string text(const char* key) const {
+    const toml::node& node = require(key);
+    const std::optional<std::string> value = node.value_exact<std::string>();
+    if (!value || value->empty())
+      fail_at_key(where(node), full_key(key), text_of(node), "a file name in quotes");
+    return *value;
+  }
+
+  /// Fails at the line of `key`, or at the line of the table if it has no such key.
+  [[noreturn]] void fail_at(const char* key, std::string_view found, std::string_view allowed) const {
+    const toml::node* node = table_.get(key);
+    fail_at_key(node != nullptr ? where(*node) : where(table_), full_key(key), found, allowed);
+  }
+
+  std::string text_of(const char* key) const { return text_of(require(key)); }
+
+ private:
+  static std::optional<double> finite(const toml::node& node) {
+    if (!node.is_number()) return std::nullopt;
+    const std::optional<double> value = node.value<double>();
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    return value;
+  }
+
+  static std::string text_of(const toml::node& node) {
+    std::ostringstream text;
+    text << toml::toml_formatter{node};
+    return text.str();
+  }
+
+  const toml::node& require(const char* key) const {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) fail_at_key(where(table_), full_key(key), "none", "this key is required");
+    return *node;
+  }
+
+  std::string where(const toml::node& node) const {
+    const auto line = node.source().begin.line;
+    return line > 0 ? file_ + ":" + std::to_string(line) : file_;
+  }
+
+  std::string full_key(std::string_view key) const {
+    return name_.empty() ? std::string(key) : name_ + "." + std::string(key);
+  }
+
+  std::string file_;
+  std::string name_;
+  const toml::table& table_;
+};
+
+}  // namespace testbench

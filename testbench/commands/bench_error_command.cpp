@@ -201,6 +201,7 @@ void BenchErrorCommand::run() {
   const ExrFilm truth = load_reference();
   const Scene loaded = load(truth);
   const std::vector<CurvePoint> points = measure(loaded, truth);
+  print_notes(loaded);
   std::printf("%s, %d x %d, light's pixels left out, reference %s\n", loaded.name.c_str(), loaded.film.width,
               loaded.film.height, reference.c_str());
   print_table(points, native_only);

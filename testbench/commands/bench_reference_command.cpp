@@ -66,6 +66,7 @@ void BenchReferenceCommand::run() {
   attributes[kSeedAttribute] = std::to_string(options.program.seed);
   const std::string& exr = outputs.path("--output");
   write_exr(exr, result.film, attributes);
+  print_notes(loaded);
   std::printf("%s, %d x %d, %d samples a pixel, seed %llu: %s, %.1f s CPU\n", loaded.name.c_str(),
               loaded.film.width, loaded.film.height, options.work.samples,
               static_cast<unsigned long long>(options.program.seed), exr.c_str(), result.cpu_seconds);

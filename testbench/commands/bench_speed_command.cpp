@@ -242,6 +242,7 @@ void BenchSpeedCommand::run() {
   print_group(variants, "waves", "untraced");
   print_group(variants, "PEs", "96");
   print_group(variants, "level", cn::name_of(variants.back().options.level));
+  print_notes(loaded);
   outputs.write("--json", [&] { return to_json(variants).dump(2) + "\n"; });
   outputs.write("--csv", [&] { return to_csv(variants); });
 }

@@ -104,6 +104,7 @@ void BenchTimingCommand::run() const {
   std::printf("%s at %d x %d, %d samples a pixel; chip %s; sweeps: program full, n = 1\n\n",
               loaded.name.c_str(), film.width, film.height, samples, options.chip.preset.c_str());
   print_table(points, comparisons);
+  print_notes(loaded);
   outputs.write("--json", [&] { return to_json(points, comparisons).dump(2) + "\n"; });
 }
 

@@ -1,6 +1,7 @@
 #include "testbench/commands/command_options.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <thread>
@@ -88,7 +89,10 @@ cn::Level LevelOption::level() const {
 
 void add_scene_argument(CLI::App& command, std::string& scene) {
   CLI::Option* const argument =
-      command.add_option("scene", scene, "Directory with a scene.toml, or a .toml file")->type_name("SCENE");
+      command
+          .add_option("scene", scene,
+                      "Directory with a scene.toml, a .toml file, or a mesh (.obj, .ply, .gltf, .glb)")
+          ->type_name("SCENE");
   if (scene.empty())
     argument->required();
   else
@@ -115,12 +119,22 @@ void add_check_hazards_flag(CLI::App& command, bool& check_hazards) {
       "Stop when the firmware uses what a transfer may still read or write (with kernels built for that)");
 }
 
-Scene load_scene_for_film(const std::string& path, const std::string& size) {
+Scene load_scene_for_film(const std::string& path, const std::string& size, bool is_outside_allowed) {
   std::optional<FilmSize> film;
   if (!size.empty()) film = parse_size(size);
-  Scene loaded = load_scene(path);
+  Scene loaded = load_scene(path, is_outside_allowed);
   if (film) loaded.film = *film;
   return loaded;
+}
+
+void add_allow_outside_flag(CLI::App& command, bool& is_outside_allowed) {
+  command.add_flag("--allow-outside", is_outside_allowed,
+                   "Let the scene read files that do not lie below its own folder");
+}
+
+void print_notes(const Scene& scene) {
+  for (const std::string& line : scene.notes.lines())
+    std::fprintf(stderr, "csx600: note: %s\n", line.c_str());
 }
 
 }  // namespace testbench

@@ -74,6 +74,13 @@ void add_scene_argument(CLI::App& command, std::string& scene);
 void add_size_option(CLI::App& command, std::string& size);
 
 /// Loads a scene. Its film has the size `size`, "480x480", unless that is empty. Throws InputError.
-Scene load_scene_for_film(const std::string& path, const std::string& size);
+Scene load_scene_for_film(const std::string& path, const std::string& size, bool is_outside_allowed = false);
+
+/// --allow-outside, for load_scene_for_film().
+void add_allow_outside_flag(CLI::App& command, bool& is_outside_allowed);
+
+/// Prints a scene's notes on stderr, a line each. A command calls it at its end, so that no note goes before
+/// an error.
+void print_notes(const Scene& scene);
 
 }  // namespace testbench

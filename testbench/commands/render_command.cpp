@@ -30,6 +30,7 @@ struct RenderCommand {
   TimingOption timing;
   LevelOption level;
   FirmwareOptions firmware;
+  bool is_outside_allowed = false;
   bool native = false;
   OutputFiles outputs;
   bool statistics_text_wanted = false;
@@ -79,7 +80,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
     if (observation.any())
       throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
     if (ranks.is_first()) outputs.require_writable(observation.outputs());
-    loaded = load_scene_for_film(scene, size);
+    loaded = load_scene_for_film(scene, size, is_outside_allowed);
     request.traversal_reason = choose_tree_for(*loaded, request.options);
   } catch (const InputError& wrong) {
     error = wrong.what();
@@ -106,6 +107,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       {"csx600.image_sha256", render->film.sha256()}};
   write_image(render->film, provenance);
   outputs.write("--stats", [&] { return render->statistics.dump(2) + "\n"; });
+  print_notes(*loaded);
   std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments", loaded->name.c_str(),
               loaded->film.width, loaded->film.height, request.options.work.samples, ranks.size(),
               static_cast<unsigned long long>(render->segments));
@@ -120,7 +122,7 @@ void RenderCommand::run() {
   RenderRequest request = make_request();
   outputs.require_writable(observation.outputs());
   require_writable(request.options.observation, request.options.chip);
-  const Scene loaded = load_scene_for_film(scene, size);
+  const Scene loaded = load_scene_for_film(scene, size, is_outside_allowed);
   request.traversal_reason = choose_tree_for(loaded, request.options);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
@@ -137,9 +139,7 @@ void RenderCommand::run() {
     return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
   });
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
-  if (loaded.degenerate_triangles > 0)
-    std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", scene.c_str(),
-                 loaded.degenerate_triangles);
+  print_notes(loaded);
   std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
               loaded.film.width, loaded.film.height, request.options.work.samples,
               name_of(request.options.program.program), request.options.program.n,
@@ -162,6 +162,7 @@ void add_render_command(CLI::App& app) {
   in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 1, 1 << 30)
       ->capture_default_str();
   add_size_option(command, state->size);
+  add_allow_outside_flag(command, state->is_outside_allowed);
   state->chip.add_to(command, "csx600");
   state->timing.add_to(command);
   state->level.add_to(command);

@@ -154,6 +154,7 @@ void ReproduceCommand::run() const {
   print_table(2, "what is buffered, n = 1", cells);
   std::printf("\n");
   print_summary(cells);
+  print_notes(loaded);
   outputs.write("--json", [&] { return to_json(cells, options).dump(2) + "\n"; });
 }
 

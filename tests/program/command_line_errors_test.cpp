@@ -164,8 +164,8 @@ TEST_F(CommandLineErrors, MissingFiles) {
   scene.toml = replaced(scene.toml, "mesh.obj", "none.obj");
   expect_scene_error(scene, {"none.obj"});
   scene = {};
-  scene.obj = replaced(scene.obj, "mtllib mesh.mtl", "mtllib none.mtl");
-  expect_scene_error(scene, {"none.mtl", "mesh.obj"});
+  scene.obj = replaced(scene.obj, "mtllib mesh.mtl", "mtllib .");
+  expect_scene_error(scene, {"mesh.obj:1: mtllib", "a regular file"});
 }
 
 TEST_F(CommandLineErrors, BrokenScene) {
@@ -199,8 +199,8 @@ TEST_F(CommandLineErrors, BrokenScene) {
        [](SceneFiles& s) { s.obj = replaced(s.obj, "v 0 1 0", "v 0 one 0"); },
        {"mesh.obj:4", "one"}},
       {"material",
-       [](SceneFiles& s) { s.obj = replaced(s.obj, "usemtl light", "usemtl lamp"); },
-       {"mesh.obj", "lamp"}},
+       [](SceneFiles& s) { s.mtl = replaced(s.mtl, "Ke 1 2 3", "Ke 1 2 x"); },
+       {"mesh.mtl", "light", "1 2 x"}},
       {"no faces", [](SceneFiles& s) { s.obj = replaced(s.obj, "f 1 2 3", ""); }, {"mesh"}},
   };
   for (const Case& broken : cases) {

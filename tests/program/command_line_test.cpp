@@ -176,7 +176,50 @@ TEST_F(CommandLine, TrianglesWithoutAreaAreLeftOutWithANote) {
   write("mesh.mtl", scene.mtl);
   const CommandResult result = run({"render", "scene.toml", "--samples", "1", "--native"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.error, "note: scene.toml: 1 triangles without area were left out\n");
+  EXPECT_EQ(result.error, "csx600: note: scene.toml: a triangle without area is left out\n");
+}
+
+TEST_F(CommandLine, AMeshFileAloneIsOneCommandFromAPicture) {
+  write("tile.OBJ", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const CommandResult result =
+      run({"render", "tile.OBJ", "--samples", "1", "--size", "8x8", "--native", "--png", "tile.png"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(
+      result.error,
+      "csx600: note: tile.OBJ:5: no material: a face has the default material of reflectance 0.8 (material "
+      "of "
+      "[[mesh]] sets another)\n"
+      "csx600: note: tile.OBJ: no camera, so one that sees the whole mesh is used\n"
+      "csx600: note: tile.OBJ: no triangle emits, so a square light above and behind the camera is added\n");
+}
+
+TEST_F(CommandLine, AMissingMtlFileIsANoteAndTheDefaultMaterial) {
+  const test_support::SceneFiles scene;
+  write("scene.toml", scene.toml);
+  write("mesh.obj", scene.obj);
+  const CommandResult result = run({"render", "scene.toml", "--samples", "1", "--native"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.error.find("csx600: note: mesh.obj:1: mesh.mtl: an MTL file is missing\n"),
+            std::string::npos)
+      << result.error;
+  EXPECT_NE(result.error.find("no material 'light': a face has the default material"), std::string::npos)
+      << result.error;
+}
+
+TEST_F(CommandLine, FilesOutsideTheSceneNeedAllowOutside) {
+  const test_support::SceneFiles scene;
+  std::string toml = scene.toml;
+  toml.replace(toml.find("mesh.obj"), 8, "../mesh.obj");
+  write("in/scene.toml", toml);
+  write("mesh.obj", scene.obj);
+  write("mesh.mtl", scene.mtl);
+  const std::vector<std::string> command = {"render", "in", "--samples", "1", "--native"};
+  const CommandResult refused = run(command);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.error.find("--allow-outside"), std::string::npos) << refused.error;
+  std::vector<std::string> allowed = command;
+  allowed.push_back("--allow-outside");
+  EXPECT_EQ(run(allowed).exit_code, 0);
 }
 
 /// Waits until Linux says that the process catches SIGINT, then a little longer, into the run.

@@ -4,7 +4,7 @@
 packages=(
   g++ cmake ninja-build pkg-config binutils
   libsystemc-dev libglm-dev libopenexr-dev libpng-dev libssl-dev
-  libsleef-dev librandom123-dev libglu1-mesa-dev libtinygltf-dev libembree-dev
+  libsleef-dev librandom123-dev libglu1-mesa-dev libmeshoptimizer-dev libdraco-dev libembree-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev
   libopenmpi-dev openmpi-bin gtkwave chromium python3

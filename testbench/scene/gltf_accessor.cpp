@@ -1,91 +1,205 @@
 #include "testbench/scene/gltf_accessor.hpp"
 
-#include <tiny_gltf.h>
-
+#include <algorithm>
 #include <cstring>
 
-#include "testbench/system/error.hpp"
+#include "testbench/scene/gltf_schema.hpp"
 
 namespace testbench {
 namespace {
 
+/// Elements that no byte of the file stands for, zeros, are at most this many.
+constexpr std::size_t kMostZeros = std::size_t{1} << 24;
+
 template <class T>
-T load(const std::uint8_t* from) {
+double load_as_number(const std::uint8_t* from) {
   T value;
   std::memcpy(&value, from, sizeof(value));
-  return value;
+  return static_cast<double>(value);
 }
 
-bool is_index_of(int index, std::size_t size) {
-  return index >= 0 && std::size_t(index) < size;
+double load_component(GltfComponent type, const std::uint8_t* from) {
+  switch (type) {
+    case GltfComponent::i8:
+      return load_as_number<std::int8_t>(from);
+    case GltfComponent::u8:
+      return load_as_number<std::uint8_t>(from);
+    case GltfComponent::i16:
+      return load_as_number<std::int16_t>(from);
+    case GltfComponent::u16:
+      return load_as_number<std::uint16_t>(from);
+    case GltfComponent::u32:
+      return load_as_number<std::uint32_t>(from);
+    case GltfComponent::f32:
+      break;
+  }
+  return load_as_number<float>(from);
+}
+
+std::size_t bytes_of(GltfComponent type) {
+  if (type == GltfComponent::i8 || type == GltfComponent::u8) return 1;
+  return type == GltfComponent::i16 || type == GltfComponent::u16 ? 2 : 4;
+}
+
+std::size_t width_of(const std::string& type) {
+  if (type == "SCALAR") return 1;
+  if (type.compare(0, 3, "MAT") == 0) return std::size_t(type[3] - '0') * std::size_t(type[3] - '0');
+  return std::size_t(type[3] - '0');
+}
+
+GltfComponent component_of(const nlohmann::json& object) {
+  return static_cast<GltfComponent>(object.at("componentType").get<int>());
+}
+
+/// Elements in a buffer view, one behind the other or `stride_bytes` apart.
+struct ElementRange {
+  std::size_t view;
+  std::size_t offset_bytes;
+  std::size_t stride_bytes;  ///< 0 for one behind the other
+  std::size_t count;
+  std::size_t width;
+  GltfComponent component;
+};
+
+/// Calls visit(index of the component, its number) for all components of the elements.
+template <class Visitor>
+void for_each_component(GltfDocument& document, const ElementRange& elements, const std::string& where,
+                        const Visitor& visit) {
+  const GltfBytes bytes = document.view(elements.view);
+  const std::size_t component_bytes = bytes_of(elements.component);
+  const std::size_t element_bytes = component_bytes * elements.width;
+  const std::size_t stride = elements.stride_bytes == 0 ? element_bytes : elements.stride_bytes;
+  if (stride < element_bytes)
+    document.fail(where, "a byteStride of " + std::to_string(stride),
+                  "at least the " + std::to_string(element_bytes) + " bytes of an element");
+  // Subtracted and divided instead of added and multiplied: any number may stand in the file.
+  if (elements.offset_bytes > bytes.size || element_bytes > bytes.size - elements.offset_bytes ||
+      elements.count - 1 > (bytes.size - elements.offset_bytes - element_bytes) / stride)
+    document.fail(where,
+                  std::to_string(elements.count) + " elements beyond the end of bufferView " +
+                      std::to_string(elements.view) + " of " + std::to_string(bytes.size) + " bytes",
+                  "elements within it");
+  for (std::size_t i = 0; i < elements.count; ++i)
+    for (std::size_t k = 0; k < elements.width; ++k)
+      visit(i * elements.width + k, load_component(elements.component, bytes.data + elements.offset_bytes +
+                                                                           i * stride + k * component_bytes));
+}
+
+/// Replaces the elements that accessor.sparse names (section 3.6.2.3).
+void replace_sparse(GltfDocument& document, const nlohmann::json& accessor, const std::string& where,
+                    GltfNumbers& numbers) {
+  const nlohmann::json& sparse = accessor.at("sparse");
+  const auto count = sparse.at("count").get<std::size_t>();
+  const std::size_t size = numbers.size();
+  if (count > size)
+    document.fail(where + ", sparse", std::to_string(count) + " elements", "at most " + std::to_string(size));
+  const nlohmann::json& indices = sparse.at("indices");
+  std::vector<std::size_t> places;
+  for_each_component(
+      document,
+      {indices.at("bufferView"), size_or(indices, "byteOffset", 0), 0, count, 1, component_of(indices)},
+      where + ", sparse indices", [&](std::size_t, double index) {
+        if (index >= double(size) || (!places.empty() && index <= double(places.back())))
+          document.fail(where + ", sparse indices", std::to_string(std::size_t(index)),
+                        "rising ones, 0 to " + std::to_string(size - 1));
+        places.push_back(std::size_t(index));
+      });
+  const nlohmann::json& values = sparse.at("values");
+  for_each_component(document,
+                     {values.at("bufferView"), size_or(values, "byteOffset", 0), 0, count, numbers.width,
+                      component_of(accessor)},
+                     where + ", sparse values", [&](std::size_t i, double value) {
+                       numbers.values[places[i / numbers.width] * numbers.width + i % numbers.width] = value;
+                     });
+}
+
+/// A buffer view may tell its stride beside or within its compression.
+std::size_t stride_of(const GltfDocument& document, std::size_t view) {
+  const nlohmann::json& source = document.element("bufferViews", view);
+  const nlohmann::json* const packed = find_gltf(source, "extensions", "EXT_meshopt_compression");
+  return size_or(source, "byteStride", packed == nullptr ? 0 : size_or(*packed, "byteStride", 0));
+}
+
+GltfNumbers read_numbers(GltfDocument& document, const nlohmann::json& accessor, const std::string& where) {
+  const auto count = accessor.at("count").get<std::size_t>();
+  GltfNumbers numbers;
+  numbers.width = width_of(accessor.at("type").get<std::string>());
+  if (const nlohmann::json* const view = find_gltf(accessor, "bufferView")) {
+    const auto index = view->get<std::size_t>();
+    for_each_component(document,
+                       {index, size_or(accessor, "byteOffset", 0), stride_of(document, index), count,
+                        numbers.width, component_of(accessor)},
+                       where, [&](std::size_t, double value) { numbers.values.push_back(value); });
+  } else {
+    if (count > kMostZeros)
+      document.fail(where, std::to_string(count) + " elements of zero",
+                    "at most " + std::to_string(kMostZeros));
+    numbers.values.assign(count * numbers.width, 0.0);
+  }
+  if (accessor.contains("sparse")) replace_sparse(document, accessor, where, numbers);
+  return numbers;
+}
+
+std::string allowed_by(const GltfForm& form) {
+  std::string text;
+  for (const char* type : form.types) text += (text.empty() ? "" : " or ") + std::string(type);
+  text += " of component type";
+  for (const GltfComponent type : form.not_normalized) text += " " + std::to_string(int(type));
+  for (const GltfComponent type : form.normalized) text += " " + std::to_string(int(type)) + " normalized";
+  return text;
 }
 
 }  // namespace
 
-GltfAccessor::GltfAccessor(const std::filesystem::path& file, const tinygltf::Model& model, int index,
-                           std::string where)
-    : file_(file), where_(std::move(where)) {
-  const auto require_index = [&](int found, std::size_t size, const char* what) {
-    if (!is_index_of(found, size))
-      fail(std::string(what) + " " + std::to_string(found),
-           size == 0 ? "none, the file holds no " + std::string(what) : "0 to " + std::to_string(size - 1));
-  };
-  require_index(index, model.accessors.size(), "accessor");
-  const tinygltf::Accessor& accessor = model.accessors[std::size_t(index)];
-  if (accessor.sparse.isSparse) fail("a sparse accessor", "a dense one");
-  require_index(accessor.bufferView, model.bufferViews.size(), "bufferView");
-  const tinygltf::BufferView& view = model.bufferViews[std::size_t(accessor.bufferView)];
-  require_index(view.buffer, model.buffers.size(), "buffer");
-  const std::vector<unsigned char>& bytes = model.buffers[std::size_t(view.buffer)].data;
-
-  component_type_ = accessor.componentType;
-  is_vec3_ = accessor.type == TINYGLTF_TYPE_VEC3;
-  is_scalar_ = accessor.type == TINYGLTF_TYPE_SCALAR;
-  const int component_bytes = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component_type_));
-  if ((!is_vec3_ && !is_scalar_) || component_bytes <= 0)
-    fail("an unknown type", "SCALAR or VEC3 of numbers");
-  const std::size_t element_bytes = std::size_t(component_bytes) * (is_vec3_ ? 3 : 1);
-  stride_bytes_ = view.byteStride == 0 ? element_bytes : view.byteStride;
-  size_ = accessor.count;
-  if (size_ == 0) return;
-  // Subtracted instead of added: any number may stand in the file.
-  const auto fits = [](std::size_t offset, std::size_t length, std::size_t within) {
-    return offset <= within && length <= within - offset;
-  };
-  const bool spans = size_ - 1 <= (view.byteLength / std::max<std::size_t>(stride_bytes_, 1));
-  if (!fits(view.byteOffset, view.byteLength, bytes.size()) || !spans ||
-      !fits(accessor.byteOffset, (size_ - 1) * stride_bytes_ + element_bytes, view.byteLength))
-    fail(std::to_string(size_) + " elements beyond the end of the buffer of " + std::to_string(bytes.size()) +
-             " bytes",
-         "elements within it");
-  data_ = bytes.data() + view.byteOffset + accessor.byteOffset;
+void require_gltf_form(const GltfDocument& document, const nlohmann::json& accessor, const GltfForm& form,
+                       const std::string& where) {
+  const auto type = accessor.at("type").get<std::string>();
+  const bool is_normalized = accessor.value("normalized", false);
+  const auto& components = is_normalized ? form.normalized : form.not_normalized;
+  const bool has_component =
+      std::find(components.begin(), components.end(), component_of(accessor)) != components.end();
+  const bool has_type =
+      std::any_of(form.types.begin(), form.types.end(), [&](const char* one) { return type == one; });
+  if (!has_component || !has_type)
+    document.fail(where,
+                  "an accessor of " + type + " of component type " + shortened(accessor["componentType"]) +
+                      (is_normalized ? " normalized" : ""),
+                  allowed_by(form));
 }
 
-glm::dvec3 GltfAccessor::point(std::size_t element) const {
-  if (!is_vec3_ || component_type_ != TINYGLTF_COMPONENT_TYPE_FLOAT) fail("another type", "VEC3 of floats");
-  const std::uint8_t* const from = data_ + element * stride_bytes_;
-  return {load<float>(from), load<float>(from + 4), load<float>(from + 8)};
+void normalize_gltf_numbers(const nlohmann::json& accessor, GltfNumbers& numbers) {
+  const GltfComponent type = component_of(accessor);
+  if (!accessor.value("normalized", false) || type == GltfComponent::f32) return;
+  const double largest = type == GltfComponent::i8    ? 127.0
+                         : type == GltfComponent::u8  ? 255.0
+                         : type == GltfComponent::i16 ? 32767.0
+                                                      : 65535.0;
+  for (double& value : numbers.values) value = std::max(value / largest, -1.0);
 }
 
-std::size_t GltfAccessor::index(std::size_t element, std::size_t limit) const {
-  const std::uint8_t* const from = data_ + element * stride_bytes_;
-  std::size_t value = 0;
-  if (is_scalar_ && component_type_ == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) {
-    value = *from;
-  } else if (is_scalar_ && component_type_ == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
-    value = load<std::uint16_t>(from);
-  } else if (is_scalar_ && component_type_ == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-    value = load<std::uint32_t>(from);
-  } else {
-    fail("another type", "SCALAR of unsigned integers");
+GltfNumbers read_gltf_accessor(GltfDocument& document, std::size_t index, const GltfForm& form,
+                               const std::string& where) {
+  const nlohmann::json& accessor = document.element("accessors", index);
+  require_gltf_form(document, accessor, form, where);
+  GltfNumbers numbers = read_numbers(document, accessor, where);
+  normalize_gltf_numbers(accessor, numbers);
+  return numbers;
+}
+
+std::vector<std::uint32_t> read_gltf_indices(GltfDocument& document, std::size_t accessor, std::size_t limit,
+                                             const std::string& where) {
+  const GltfNumbers numbers = read_gltf_accessor(
+      document, accessor, {{"SCALAR"}, {}, {GltfComponent::u8, GltfComponent::u16, GltfComponent::u32}},
+      where);
+  std::vector<std::uint32_t> indices;
+  indices.reserve(numbers.values.size());
+  for (const double value : numbers.values) {
+    if (value >= double(limit))
+      document.fail(where, "vertex " + std::to_string(std::uint32_t(value)),
+                    limit == 0 ? "none" : "0 to " + std::to_string(limit - 1));
+    indices.push_back(static_cast<std::uint32_t>(value));
   }
-  if (value >= limit)
-    fail("vertex " + std::to_string(value), limit == 0 ? "none" : "0 to " + std::to_string(limit - 1));
-  return value;
-}
-
-void GltfAccessor::fail(const std::string& found, const std::string& allowed) const {
-  throw InputError(file_.string() + ": " + where_ + ": found " + found + "; allowed: " + allowed);
+  return indices;
 }
 
 }  // namespace testbench

@@ -1,40 +1,40 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <glm/glm.hpp>
+#include <initializer_list>
 #include <string>
+#include <vector>
 
-namespace tinygltf {
-class Model;
-}
+#include "testbench/scene/gltf_compression.hpp"
+#include "testbench/scene/gltf_document.hpp"
 
 namespace testbench {
 
-/// Reads the elements of one accessor of a glTF file; every access is checked to lie within its buffer.
-/// Throws InputError, which names `where` in the file, for an accessor that reaches beyond its buffer, is
-/// sparse, or has another type than the one asked for.
-class GltfAccessor {
- public:
-  GltfAccessor(const std::filesystem::path& file, const tinygltf::Model& model, int index, std::string where);
+/// The component types of an accessor (specification, section 3.6.2.2).
+enum class GltfComponent { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 
-  std::size_t size() const { return size_; }
-  /// An element of three floats.
-  glm::dvec3 point(std::size_t element) const;
-  /// An element that is an unsigned integer below `limit`.
-  std::size_t index(std::size_t element, std::size_t limit) const;
-
- private:
-  [[noreturn]] void fail(const std::string& found, const std::string& allowed) const;
-
-  const std::filesystem::path& file_;
-  std::string where_;
-  const std::uint8_t* data_ = nullptr;
-  std::size_t size_ = 0;
-  std::size_t stride_bytes_ = 0;
-  int component_type_ = 0;
-  bool is_vec3_ = false;
-  bool is_scalar_ = false;
+/// What an accessor may be for a certain use.
+struct GltfForm {
+  std::initializer_list<const char*> types;             ///< "VEC3"
+  std::initializer_list<GltfComponent> normalized;      ///< component types, when they are normalized
+  std::initializer_list<GltfComponent> not_normalized;  ///< and when they are not
 };
+
+/// The elements of one accessor, dense, sparse or both, as numbers; normalized integers as fractions. Throws
+/// InputError, which names `where` in the file, for one that reaches beyond its buffer view or has another
+/// form.
+GltfNumbers read_gltf_accessor(GltfDocument& document, std::size_t accessor, const GltfForm& form,
+                               const std::string& where);
+
+/// The same of unsigned integers below `limit`.
+std::vector<std::uint32_t> read_gltf_indices(GltfDocument& document, std::size_t accessor, std::size_t limit,
+                                             const std::string& where);
+
+/// Turns integers into fractions if the accessor says normalized (section 3.6.2.2).
+void normalize_gltf_numbers(const nlohmann::json& accessor, GltfNumbers& numbers);
+
+/// Throws InputError if the accessor has another form than `form`.
+void require_gltf_form(const GltfDocument& document, const nlohmann::json& accessor, const GltfForm& form,
+                       const std::string& where);
 
 }  // namespace testbench

@@ -1,251 +1,222 @@
 #include "testbench/scene/gltf_mesh.hpp"
 
-#include <tiny_gltf.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <string>
+#include <map>
 
 #include "testbench/scene/gltf_accessor.hpp"
-#include "testbench/system/error.hpp"
+#include "testbench/scene/gltf_material.hpp"
+#include "testbench/scene/gltf_nodes.hpp"
+#include "testbench/scene/gltf_primitive.hpp"
 
 namespace testbench {
 namespace {
 
-constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
+/// A file of few bytes can place a mesh a million times.
+constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 26;
 
-[[noreturn]] void fail_in_gltf(const std::filesystem::path& file, const std::string& where,
-                               const std::string& found, const std::string& allowed) {
-  throw InputError(file.string() + ": " + (where.empty() ? "" : where + ": ") + "found " + found +
-                   "; allowed: " + allowed);
-}
-
-/// Image loader that decodes nothing: material_of() refuses materials with textures.
-bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                 void*) {
-  return true;
-}
-
-tinygltf::Model parse_gltf(const std::filesystem::path& file) {
-  tinygltf::TinyGLTF parser;
-  parser.SetImageLoader(leave_image, nullptr);
-  tinygltf::Model model;
-  std::string error;
-  std::string warning;
-  std::error_code status;
-  if (!std::filesystem::is_regular_file(file, status))
-    fail_in_gltf(file, "", "no file that can be read", "a .gltf or .glb file");
-  bool parsed = false;
-  try {
-    parsed = file.extension() == ".glb" ? parser.LoadBinaryFromFile(&model, &error, &warning, file.string())
-                                        : parser.LoadASCIIFromFile(&model, &error, &warning, file.string());
-  } catch (const std::exception& thrown) {  // thrown by TinyGLTF's JSON parser
-    error = thrown.what();
-  }
-  if (!parsed)
-    fail_in_gltf(file, "", error.empty() ? "something that is no glTF" : "'" + first_line(error) + "'",
-                 "a valid glTF 2.0 file");
-  for (const std::string& extension : model.extensionsRequired)
-    if (extension != kEmissiveStrength)
-      fail_in_gltf(file, "extensionsRequired", extension, std::string("none but ") + kEmissiveStrength);
-  return model;
-}
-
-std::string named(const char* kind, std::size_t index, const std::string& name) {
-  return std::string(kind) + " " + std::to_string(index) + (name.empty() ? "" : " '" + name + "'");
-}
-
-Material material_of(const std::filesystem::path& file, const tinygltf::Material& source, std::size_t index) {
-  const std::string where = named("material", index, source.name);
-  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  if (pbr.baseColorTexture.index >= 0 || source.emissiveTexture.index >= 0)
-    fail_in_gltf(file, where, "a texture", "colours only (baseColorFactor, emissiveFactor)");
-  double strength = 1.0;
-  const auto extension = source.extensions.find(kEmissiveStrength);
-  if (extension != source.extensions.end() && extension->second.Has("emissiveStrength"))
-    strength = extension->second.Get("emissiveStrength").GetNumberAsDouble();
-  Material material;
-  material.name = source.name;
-  for (int channel = 0; channel < 3; ++channel) {
-    const double reflectance = pbr.baseColorFactor[std::size_t(channel)];
-    const double emission = source.emissiveFactor[std::size_t(channel)] * strength;
-    if (!(reflectance >= 0.0 && reflectance <= 1.0))
-      fail_in_gltf(file, where, "a baseColorFactor of " + std::to_string(reflectance), "0 to 1");
-    if (!(emission >= 0.0 && emission <= kMaxEmission))
-      fail_in_gltf(file, where, "an emission of " + std::to_string(emission), "0 to 1e12");
-    material.reflectance[channel] = reflectance;
-    material.emission[channel] = emission;
-  }
-  return material;
-}
-
-glm::dmat4 transform_of(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-  glm::dmat4 transform(1.0);
-  if (node.translation.size() == 3)
-    transform = glm::translate(transform, glm::make_vec3(node.translation.data()));
-  if (node.rotation.size() == 4)
-    transform *= glm::mat4_cast(
-        glm::normalize(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2])));
-  if (node.scale.size() == 3) transform = glm::scale(transform, glm::make_vec3(node.scale.data()));
-  return transform;
-}
-
-/// Visits the corners of each triangle of a primitive, in the order that its mode defines.
-template <class Visitor>  // (a, b, c): indices into the list of vertices
-void for_each_triangle(int mode, std::size_t vertices, const Visitor& visit) {
-  const auto last = [](std::size_t count, std::size_t step) { return count < step ? 0 : count - step + 1; };
-  if (mode == TINYGLTF_MODE_TRIANGLES || mode < 0)
-    for (std::size_t i = 0; i < last(vertices, 3); i += 3) visit(i, i + 1, i + 2);
-  if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
-    for (std::size_t i = 0; i < last(vertices, 3); ++i) visit(i, i + 1 + i % 2, i + 2 - i % 2);
-  if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
-    for (std::size_t i = 1; i < last(vertices, 2); ++i) visit(i, i + 1, std::size_t{0});
-}
-
-/// Walks the nodes and collects their triangles, materials and camera.
+/// Collects the triangles, materials and the camera of a document's nodes.
 class Collector {
  public:
-  Collector(const std::filesystem::path& file, const tinygltf::Model& model, GltfFile& result)
-      : file_(file), model_(model), result_(result), visited_(model.nodes.size(), false) {
-    for (std::size_t i = 0; i < model.materials.size(); ++i)
-      materials_.push_back(material_of(file, model.materials[i], i));
+  Collector(GltfDocument& document, GltfFile& result)
+      : document_(document), result_(result), nodes_(read_gltf_nodes(document)) {
+    surfaces_.resize(document.array("materials").size());
+    materials_.resize(surfaces_.size());
     materials_.push_back(
         {"", glm::dvec3(1.0), glm::dvec3(0.0)});  // glTF's default, for primitives without one
   }
 
   void collect() {
-    for (const int root : roots()) add_node(root, glm::dmat4(1.0));
+    for (const std::size_t node : nodes_.in_scene) {
+      const nlohmann::json& source = document_.element("nodes", node);
+      if (source.contains("mesh")) add_mesh(node, source);
+      if (source.contains("camera") && !result_.camera)
+        result_.camera = read_gltf_camera(document_, node, nodes_.transforms[node]);
+      if (find_gltf(source, "extensions", "KHR_lights_punctual") != nullptr)
+        document_.note("a light without area (KHR_lights_punctual) is left out",
+                       document_.named("nodes", "node", node));
+    }
+    if (!document_.array("animations").empty())
+      document_.note("an animation is left out, its nodes stand as the file places them", "",
+                     document_.array("animations").size());
     if (result_.mesh.triangles.empty())
-      fail_in_gltf(file_, "",
-                   "no triangle (" + std::to_string(result_.mesh.degenerate_triangles) + " without area)",
-                   "one triangle or more");
+      document_.fail("",
+                     "no triangle (" + std::to_string(result_.mesh.degenerate_triangles) + " without area, " +
+                         std::to_string(cut_out_) + " cut out)",
+                     "one triangle or more");
+    add_back_sides();
     keep_used_materials(materials_, result_.mesh);
+    result_.mesh.notes.add(document_.notes());
   }
 
  private:
-  std::vector<int> roots() const {
-    if (!model_.scenes.empty()) {
-      const int scene = std::max(model_.defaultScene, 0);
-      require_index(scene, model_.scenes.size(), "scene");
-      return model_.scenes[std::size_t(scene)].nodes;
-    }
-    std::vector<bool> is_child(model_.nodes.size(), false);
-    for (const tinygltf::Node& node : model_.nodes)
-      for (const int child : node.children)
-        if (child >= 0 && std::size_t(child) < is_child.size()) is_child[std::size_t(child)] = true;
-    std::vector<int> roots;
-    for (std::size_t i = 0; i < model_.nodes.size(); ++i)
-      if (!is_child[i]) roots.push_back(static_cast<int>(i));
-    return roots;
-  }
-
-  void require_index(int index, std::size_t size, const std::string& what) const {
-    if (index < 0 || std::size_t(index) >= size)
-      fail_in_gltf(file_, "", what + " " + std::to_string(index),
-                   size == 0 ? "none, the file holds no " + what : "0 to " + std::to_string(size - 1));
-  }
-
-  /// Uses an explicit stack of nodes, because a file may chain more nodes than recursion has room for.
-  void add_node(int root, const glm::dmat4& of_root) {
-    std::vector<std::pair<int, glm::dmat4>> open{{root, of_root}};
-    while (!open.empty()) {
-      const auto [index, of_parent] = open.back();
-      open.pop_back();
-      require_index(index, model_.nodes.size(), "node");
-      const tinygltf::Node& node = model_.nodes[std::size_t(index)];
-      if (visited_[std::size_t(index)])
-        fail_in_gltf(file_, named("node", std::size_t(index), node.name), "a second way to it",
-                     "a tree: one parent at most, and no node below itself");
-      visited_[std::size_t(index)] = true;
-      const glm::dmat4 transform = of_parent * transform_of(node);
-      if (node.mesh >= 0) add_mesh(node.mesh, transform);
-      if (node.camera >= 0 && !result_.camera) add_camera(node.camera, transform);
-      for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-        open.emplace_back(*child, transform);
+  void add_mesh(std::size_t node, const nlohmann::json& source) {
+    const auto mesh = source["mesh"].get<std::size_t>();
+    const nlohmann::json& of_mesh = document_.element("meshes", mesh);
+    GltfPrimitivePlace place{mesh, 0, {}, 0};
+    for (const nlohmann::json* holder : {&of_mesh, &source})  // a node's weights go before its mesh's
+      if (const nlohmann::json* const weights = find_gltf(*holder, "weights"))
+        place.weights = weights->get<std::vector<double>>();
+    std::vector<glm::dmat4> joints;
+    if (source.contains("skin")) joints = joint_transforms(source["skin"].get<std::size_t>());
+    place.joints = joints.size();
+    const std::vector<glm::dmat4> instances =
+        joints.empty() ? read_gltf_instances(document_, node) : std::vector<glm::dmat4>{glm::dmat4(1.0)};
+    for (; place.primitive < of_mesh["primitives"].size(); ++place.primitive) {
+      const std::optional<GltfPrimitive> primitive = read_gltf_primitive(document_, place);
+      if (!primitive) continue;
+      for (const glm::dmat4& instance : instances)
+        add_primitive(*primitive, place, nodes_.transforms[node] * instance, joints);
     }
   }
 
-  void add_mesh(int index, const glm::dmat4& transform) {
-    require_index(index, model_.meshes.size(), "mesh");
-    const tinygltf::Mesh& mesh = model_.meshes[std::size_t(index)];
-    for (std::size_t i = 0; i < mesh.primitives.size(); ++i)
-      add_primitive(mesh.primitives[i], transform,
-                    named("mesh", std::size_t(index), mesh.name) + ", primitive " + std::to_string(i));
+  /// The transforms of a skin's joints (section 3.7.3.1) to the scene's coordinates.
+  std::vector<glm::dmat4> joint_transforms(std::size_t skin) {
+    const nlohmann::json& source = document_.element("skins", skin);
+    const auto joints = source["joints"].get<std::vector<std::size_t>>();
+    const std::string pointer = "/skins/" + std::to_string(skin) + "/inverseBindMatrices";
+    GltfNumbers inverses;
+    if (const nlohmann::json* const index = find_gltf(source, "inverseBindMatrices"))
+      inverses = read_gltf_accessor(document_, *index, {{"MAT4"}, {}, {GltfComponent::f32}}, pointer);
+    if (inverses.width != 0 && inverses.size() < joints.size())
+      document_.fail(pointer, std::to_string(inverses.size()) + " matrices",
+                     std::to_string(joints.size()) + ", one for each joint");
+    std::vector<glm::dmat4> transforms;
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      transforms.push_back(nodes_.transforms[joints[i]] *
+                           (inverses.width == 0 ? glm::dmat4(1.0) : glm::make_mat4(inverses[i])));
+    return transforms;
   }
 
-  void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& transform,
-                     const std::string& where) {
-    if (primitive.material >= 0) require_index(primitive.material, model_.materials.size(), "material");
-    const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end()) fail_in_gltf(file_, where, "no POSITION", "one");
-    const GltfAccessor vertices(file_, model_, position->second, where + ", POSITION");
-    std::optional<GltfAccessor> indices;
-    if (primitive.indices >= 0) indices.emplace(file_, model_, primitive.indices, where + ", indices");
-    const auto material = static_cast<std::int32_t>(primitive.material >= 0 ? std::size_t(primitive.material)
-                                                                            : materials_.size() - 1);
+  static glm::dmat4 transform_of(const std::vector<GltfInfluence>& influences,
+                                 const std::vector<glm::dmat4>& joints) {
+    glm::dmat4 sum(0.0);
+    for (const GltfInfluence& influence : influences) sum += joints[influence.joint] * influence.weight;
+    return sum;
+  }
+
+  void add_primitive(const GltfPrimitive& primitive, const GltfPrimitivePlace& place,
+                     const glm::dmat4& transform, const std::vector<glm::dmat4>& joints) {
+    const std::string where =
+        document_.named("meshes", "mesh", place.mesh) + ", primitive " + std::to_string(place.primitive);
+    const auto of_vertex = [&](std::uint32_t vertex) {
+      return joints.empty() ? transform : transform_of(primitive.influences[vertex], joints);
+    };
+    std::vector<glm::dvec3> positions;
+    positions.reserve(primitive.positions.size());
+    for (std::uint32_t i = 0; i < primitive.positions.size(); ++i)
+      positions.push_back(glm::dvec3(of_vertex(i) * glm::dvec4(primitive.positions[i], 1.0)));
+    const nlohmann::json& source = document_.element("meshes", place.mesh)["primitives"][place.primitive];
+    const std::size_t material = size_or(source, "material", surfaces_.size());
+    const bool emits_from_both_sides = material < surfaces_.size() && surface(material).is_double_sided &&
+                                       materials_[material].emission != glm::dvec3(0.0);
     // A transform that mirrors reverses the winding of triangles.
     const bool is_mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
-    const auto vertex = [&](std::size_t place) {
-      const std::size_t index = indices ? indices->index(place, vertices.size()) : place;
-      return glm::dvec3(transform * glm::dvec4(vertices.point(index), 1.0));
-    };
-    for_each_triangle(primitive.mode, indices ? indices->size() : vertices.size(),
-                      [&](std::size_t a, std::size_t b, std::size_t c) {
-                        if (is_mirrored) std::swap(b, c);
-                        add_triangle({{vertex(a), vertex(b), vertex(c)}, material}, where);
-                      });
-  }
-
-  void add_triangle(const Triangle& triangle, const std::string& where) {
-    if (!is_in_range(triangle))
-      fail_in_gltf(file_, where, "a coordinate that is no number or too large", "numbers of at most 1e100");
-    if (is_degenerate(triangle)) {
-      ++result_.mesh.degenerate_triangles;
-    } else {
-      result_.mesh.triangles.push_back(triangle);
+    for (const auto& [a, b, c] : primitive.triangles) {
+      const bool is_reversed =
+          joints.empty() ? is_mirrored : glm::determinant(glm::dmat3(of_vertex(a))) < 0.0;
+      Triangle triangle{{positions[a], positions[is_reversed ? c : b], positions[is_reversed ? b : c]}, 0};
+      const auto index = material_of(primitive, {a, b, c}, material, where);
+      if (!index) continue;
+      triangle.material = *index;
+      add_triangle(triangle, emits_from_both_sides, where);
     }
   }
 
-  /// Looks along -z with +y up (glTF 2.0, section 3.10).
-  void add_camera(int index, const glm::dmat4& transform) {
-    require_index(index, model_.cameras.size(), "camera");
-    const tinygltf::Camera& source = model_.cameras[std::size_t(index)];
-    const std::string where = named("camera", std::size_t(index), source.name);
-    if (source.type != "perspective") fail_in_gltf(file_, where, "type " + source.type, "perspective");
-    const double angle = source.perspective.yfov;
-    if (!(angle > 0.0 && angle < glm::pi<double>()))
-      fail_in_gltf(file_, where, "a yfov of " + std::to_string(angle), "0 to pi, both excluded");
-    const glm::dmat3 axes(transform);
-    if (!(std::abs(glm::determinant(axes)) > 0.0))
-      fail_in_gltf(file_, where, "a transform without volume", "one with");
-    Camera camera;
-    camera.position = glm::dvec3(transform[3]);
-    camera.direction = glm::normalize(-axes[2]);
-    const glm::dvec3 side = glm::normalize(glm::cross(camera.direction, axes[1]));
-    camera.up = glm::cross(side, camera.direction);
-    camera.vertical_field_of_view_radians = angle;
-    result_.camera = GltfCamera{camera, std::nullopt};
-    if (source.perspective.aspectRatio > 0.0) result_.camera->aspect_ratio = source.perspective.aspectRatio;
+  /// Reads a material when its first triangle comes.
+  const GltfSurface& surface(std::size_t material) {
+    if (!surfaces_[material]) {
+      surfaces_[material] = read_gltf_material(document_, material);
+      materials_[material] = surfaces_[material]->material;
+    }
+    return *surfaces_[material];
   }
 
-  const std::filesystem::path& file_;
-  const tinygltf::Model& model_;
+  /// The material of a triangle, of which there is one for each colour; std::nullopt if it is cut out. A
+  /// Lambertian triangle has one colour, so it gets the average of its vertices.
+  std::optional<std::int32_t> material_of(const GltfPrimitive& primitive,
+                                          const std::array<std::uint32_t, 3>& triangle, std::size_t material,
+                                          const std::string& where) {
+    const GltfSurface* const surface_of = material < surfaces_.size() ? &surface(material) : nullptr;
+    glm::dvec4 colour(1.0);
+    if (!primitive.colours.empty()) {
+      const glm::dvec4 corners[3] = {primitive.colours[triangle[0]], primitive.colours[triangle[1]],
+                                     primitive.colours[triangle[2]]};
+      const bool is_one = corners[0] == corners[1] && corners[0] == corners[2];
+      colour = is_one ? corners[0] : glm::min((corners[0] + corners[1] + corners[2]) / 3.0, 1.0);
+      if (!is_one) document_.note("a triangle whose vertices differ in colour has their average", where);
+    }
+    if (surface_of != nullptr && surface_of->is_masked && surface_of->alpha * colour.a < surface_of->cutoff) {
+      ++cut_out_;
+      return std::nullopt;
+    }
+    if (glm::dvec3(colour) == glm::dvec3(1.0)) return static_cast<std::int32_t>(material);
+    const Material plain = materials_[material];
+    return coloured_.try_emplace(material, materials_)
+        .first->second.index_of(plain.reflectance * glm::dvec3(colour), plain.emission);
+  }
+
+  void add_triangle(const Triangle& triangle, bool emits_from_both_sides, const std::string& where) {
+    if (!is_in_range(triangle))
+      document_.fail(where, "a coordinate that is no number or too large", "numbers of at most 1e100");
+    if (is_degenerate(triangle)) {
+      ++result_.mesh.degenerate_triangles;
+      return;
+    }
+    std::vector<Triangle>& triangles = result_.mesh.triangles;
+    if (triangles.size() == kMostGltfTriangles)
+      document_.fail(where, "more triangles", "at most " + std::to_string(kMostGltfTriangles));
+    triangles.push_back(triangle);
+    if (emits_from_both_sides) double_sided_.push_back(triangles.size() - 1);
+  }
+
+  /// Materials emit from their front side, so a light of two sides is two triangles back to back. They must
+  /// not lie in one plane, where a ray that comes from either side would find the same one of them. The
+  /// second lies behind the first by 2^-30 of the file's largest coordinate, far more than the rounding of
+  /// hits. The offset is rounded, so that neighbours in one plane still share their vertices.
+  void add_back_sides() {
+    std::vector<Triangle>& triangles = result_.mesh.triangles;
+    double largest = 0;
+    for (const Triangle& triangle : triangles)
+      for (const glm::dvec3& vertex : triangle.vertex)
+        largest = std::max({largest, std::abs(vertex.x), std::abs(vertex.y), std::abs(vertex.z)});
+    for (const std::size_t place : double_sided_) {
+      const Triangle front = triangles[place];
+      const glm::dvec3 normal = unit_normal(front);
+      const glm::dvec3 offset = glm::round(normal * 0x1p20) * (0x1p-50 * largest);
+      const Triangle back{{front.vertex[0] - offset, front.vertex[2] - offset, front.vertex[1] - offset},
+                          front.material};
+      if (!is_degenerate(back)) triangles.push_back(back);
+    }
+  }
+
+  /// Edges are scaled first, so that their product stays within the range of a double.
+  static glm::dvec3 unit_normal(const Triangle& triangle) {
+    const glm::dvec3 edge1 = triangle.vertex[1] - triangle.vertex[0];
+    const glm::dvec3 edge2 = triangle.vertex[2] - triangle.vertex[0];
+    const auto scaled = [](const glm::dvec3& v) {
+      return glm::normalize(v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
+    };
+    return scaled(glm::cross(scaled(edge1), scaled(edge2)));
+  }
+
+  GltfDocument& document_;
   GltfFile& result_;
-  std::vector<Material> materials_;
-  std::vector<bool> visited_;
+  const GltfNodes nodes_;
+  std::vector<std::optional<GltfSurface>> surfaces_;  ///< those that are used, by the file's index
+  std::vector<Material> materials_;                   ///< the same, the default one, then those of a colour
+  std::map<std::size_t, ColourMaterials> coloured_;   ///< by the material that the colour multiplies
+  std::vector<std::size_t> double_sided_;             ///< triangles that emit from both sides
+  std::size_t cut_out_ = 0;
 };
 
 }  // namespace
 
-GltfFile load_gltf(const std::filesystem::path& file) {
-  const tinygltf::Model model = parse_gltf(file);
+GltfFile load_gltf(const std::filesystem::path& file, const MeshOptions& options) {
+  GltfDocument document(file, options.reach);
   GltfFile result;
-  Collector(file, model, result).collect();
+  Collector(document, result).collect();
   return result;
 }
 

@@ -15,19 +15,20 @@ struct GltfCamera {
 
 struct GltfFile {
   Mesh mesh;
-  std::optional<GltfCamera> camera;  ///< the first camera among the scene's nodes
+  std::optional<GltfCamera> camera;  ///< the first perspective one among the scene's nodes
 };
 
 /// Reads a glTF 2.0 file, .gltf or .glb: all triangles of the default scene, or of all nodes without a parent
-/// if the file names no default scene. A mesh appears once for each node that holds it, transformed by the
-/// node. Surfaces are Lambertian: baseColorFactor is the reflectance, metalness and roughness are ignored;
-/// emissiveFactor times the strength of KHR_materials_emissive_strength is the emitted radiance. Points and
-/// lines have no area and are ignored.
+/// if the file names no scene. A mesh appears once for each node that holds it and for each instance there,
+/// transformed by the node, or by the joints of its skin as the nodes stand; morph targets count at their
+/// weights. Surfaces are Lambertian (gltf_material.hpp); vertex colours multiply the reflectance by their
+/// average over the triangle. Triangles of alphaMode MASK below the cutoff are left out. A double-sided
+/// material that emits does so from both sides. The mesh's notes say what else the file holds.
 ///
-/// Throws InputError (one line: file, part of the file, what was found, what is allowed) for a file that
-/// cannot be read or is cut off, an index or range beyond what it points into, a node that is its own
-/// ancestor or has two parents, a coordinate that is not a number of at most kMaxCoordinate, a colour out of
-/// range, a texture, sparse or compressed data, an unknown required extension, or a file without triangles.
-GltfFile load_gltf(const std::filesystem::path& file);
+/// Throws InputError (one line: file, JSON pointer or part of the file, what was found, what is allowed) for
+/// a file that cannot be read, is cut off or lies out of reach, JSON that breaks a rule of gltf_schema.hpp or
+/// nests too deep, an index or range beyond what it points into, nodes that are no trees, a coordinate that
+/// is not a number of at most kMaxCoordinate, an unknown required extension, or no triangles.
+GltfFile load_gltf(const std::filesystem::path& file, const MeshOptions& options);
 
 }  // namespace testbench

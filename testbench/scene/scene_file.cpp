@@ -110,7 +110,7 @@ glm::dmat4 read_transform(const TableReader& table) {
 }
 
 GltfFile load_mesh_file(const std::filesystem::path& file, const MeshOptions& options) {
-  if (is_gltf(file)) return load_gltf(file);
+  if (is_gltf(file)) return load_gltf(file, options);
   return {is_ply(file) ? load_ply_mesh(file, options) : load_obj_mesh(file, options), std::nullopt};
 }
 

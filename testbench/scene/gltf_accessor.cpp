@@ -188,6 +188,11 @@ GltfNumbers read_gltf_accessor(GltfDocument& document, std::size_t index, const 
 
 std::vector<std::uint32_t> read_gltf_indices(GltfDocument& document, std::size_t accessor, std::size_t limit,
                                              const std::string& where) {
+  if (const nlohmann::json* const view = find_gltf(document.element("accessors", accessor), "bufferView"))
+    if (const nlohmann::json* const stride =
+            find_gltf(document.element("bufferViews", view->get<std::size_t>()), "byteStride"))
+      document.fail(where, "a byteStride of " + shortened(*stride),
+                    "none, that is for attributes of vertices");
   const GltfNumbers numbers = read_gltf_accessor(
       document, accessor, {{"SCALAR"}, {}, {GltfComponent::u8, GltfComponent::u16, GltfComponent::u32}},
       where);

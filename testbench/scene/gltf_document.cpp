@@ -92,6 +92,7 @@ GltfDocument::GltfDocument(const std::filesystem::path& file, const FileReach& r
   std::error_code status;
   if (!std::filesystem::is_regular_file(file, status)) fail("", "no file that can be read", kGltfFile);
   root_ = parse_gltf_json(json_text(read_input_file(file, kGltfFile)), file_);
+  require_version();
   check_gltf(file_, root_, root_, "glTF", "");
   require_supported();
 }
@@ -126,13 +127,20 @@ std::string GltfDocument::json_text(std::string bytes) {
   return json;
 }
 
-void GltfDocument::require_supported() const {
-  const nlohmann::json& asset = root_.at("asset");
-  const std::string version = asset.at("version").get<std::string>();
-  if (version_of(version).first != 2) fail("/asset/version", shortened(asset["version"]), "2.0");
-  if (const nlohmann::json* least = find_gltf(asset, "minVersion"))
+/// Comes before all other checks, because other versions have other rules.
+void GltfDocument::require_version() const {
+  const nlohmann::json* const asset = find_gltf(root_, "asset");
+  if (asset == nullptr || !asset->is_object())
+    fail("/asset", asset == nullptr ? "none" : shortened(*asset), "an object");
+  check_gltf(file_, root_, *asset, "asset", "/asset");
+  const nlohmann::json& version = asset->at("version");
+  if (version_of(version.get<std::string>()).first != 2) fail("/asset/version", shortened(version), "2.0");
+  if (const nlohmann::json* least = find_gltf(*asset, "minVersion"))
     if (version_of(least->get<std::string>()) != std::pair(2, 0))
       fail("/asset/minVersion", shortened(*least), "2.0");
+}
+
+void GltfDocument::require_supported() const {
   const std::vector<std::string> supported = supported_gltf_extensions();
   std::string names;
   for (const std::string& name : supported) names += (names.empty() ? "" : ", ") + name;

@@ -50,6 +50,7 @@ class GltfDocument {
 
  private:
   std::string json_text(std::string bytes);
+  void require_version() const;
   void require_supported() const;
   const std::string& buffer(std::size_t index);
   std::string buffer_bytes(const nlohmann::json& source, std::size_t index, const std::string& pointer);

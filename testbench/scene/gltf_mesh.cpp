@@ -65,7 +65,10 @@ class Collector {
         joints.empty() ? read_gltf_instances(document_, node) : std::vector<glm::dmat4>{glm::dmat4(1.0)};
     for (; place.primitive < of_mesh["primitives"].size(); ++place.primitive) {
       const std::optional<GltfPrimitive> primitive = read_gltf_primitive(document_, place);
-      if (!primitive) continue;
+      if (!primitive) {
+        ++points_and_lines_;
+        continue;
+      }
       for (const glm::dmat4& instance : instances)
         add_primitive(*primitive, place, nodes_.transforms[node] * instance, joints);
     }
@@ -208,7 +211,8 @@ class Collector {
   std::vector<Material> materials_;                   ///< the same, the default one, then those of a colour
   std::map<std::size_t, ColourMaterials> coloured_;   ///< by the material that the colour multiplies
   std::vector<std::size_t> double_sided_;             ///< triangles that emit from both sides
-  std::size_t cut_out_ = 0;
+  std::size_t cut_out_ = 0;                           ///< triangles
+  std::size_t points_and_lines_ = 0;                  ///< primitives
 };
 
 }  // namespace

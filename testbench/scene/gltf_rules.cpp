@@ -66,6 +66,7 @@ constexpr GltfRule kGltfRules[] = {
     {"glTF", "materials", optional, array(0, many, object("material"))},
     {"glTF", "meshes", optional, array(0, many, object("mesh"))},
     {"glTF", "nodes", optional, array(0, many, object("node"))},
+    {"glTF", "samplers", optional, array(0, many, object("sampler"))},
     {"glTF", "scene", optional, index("scenes")},
     {"glTF", "scenes", optional, array(0, many, object("scene"))},
     {"glTF", "skins", optional, array(0, many, object("skin"))},

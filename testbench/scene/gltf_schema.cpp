@@ -1,6 +1,8 @@
 #include "testbench/scene/gltf_schema.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "testbench/system/error.hpp"
@@ -57,7 +59,9 @@ bool is_integer(const nlohmann::json& value) {
 }
 
 bool is_choice(const std::string& text, const GltfType& type) {
-  return *type.of == '\0' || (" " + std::string(type.of) + " ").find(" " + text + " ") != std::string::npos;
+  std::istringstream choices(type.of);
+  return *type.of == '\0' || std::find(std::istream_iterator<std::string>(choices), {}, text) !=
+                                 std::istream_iterator<std::string>();
 }
 
 bool is_in_range(double number, const GltfType& type) {

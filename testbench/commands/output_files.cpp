@@ -23,6 +23,10 @@ namespace {
 
 }  // namespace
 
+std::string error_of_no_file(const std::string& path) {
+  return path.empty() ? "found '', allowed is the name of a file" : "";
+}
+
 void require_outputs_apart(const std::vector<OutputOption>& outputs, const std::vector<InputName>& inputs) {
   std::vector<std::pair<FileIdentity, std::string>> taken;
   for (const auto& [option, path] : outputs) {
@@ -40,11 +44,8 @@ CLI::Option& OutputFiles::add_to(CLI::App& command, const std::string& names, co
   const std::size_t begin = names.find("--");
   const std::string option = names.substr(begin, names.find(',', begin) - begin);
   files_.emplace_back(option, "");
-  const auto error_of_empty = [](const std::string& path) -> std::string {
-    return path.empty() ? "found '', allowed is the name of a file" : "";
-  };
   return *command.add_option(names, files_.back().second, meaning)
-              ->check(error_of_empty, "")
+              ->check(error_of_no_file, "")
               ->type_name("FILE");
 }
 

@@ -15,6 +15,9 @@ using OutputOption = std::pair<std::string, std::string>;
 /// A file that a command reads, and who names it: "--chip", "the scene".
 using InputName = std::pair<std::string, std::string>;
 
+/// A check for options that name a file: "" is none.
+std::string error_of_no_file(const std::string& path);
+
 /// Throws InputError if two outputs are one file, or an output is an input; paths may be spelled in any way.
 void require_outputs_apart(const std::vector<OutputOption>& outputs, const std::vector<InputName>& inputs);
 

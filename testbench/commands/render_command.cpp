@@ -80,6 +80,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
     if (ranks.is_first()) outputs.require_writable(observation.outputs());
     loaded = load_scene_for_film(scene, size);
+    if (ranks.is_first()) outputs.require_no_input(inputs_of(chip, *loaded));
     request.traversal_reason = choose_tree_for(*loaded, request.options);
   } catch (const InputError& wrong) {
     error = wrong.what();
@@ -105,10 +106,10 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       {"csx600.segments", std::to_string(render->segments)},
       {"csx600.image_sha256", render->film.sha256()}};
   write_image(render->film, provenance);
-  outputs.write("--stats", [&] { return render->statistics.dump(2) + "\n"; });
-  std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments", loaded->name.c_str(),
-              loaded->film.width, loaded->film.height, request.options.work.samples, ranks.size(),
-              static_cast<unsigned long long>(render->segments));
+  outputs.write("--stats", [&] { return statistics_json(render->statistics); });
+  std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments",
+              printable(loaded->name).c_str(), loaded->film.width, loaded->film.height,
+              request.options.work.samples, ranks.size(), static_cast<unsigned long long>(render->segments));
   if (render->simulated_seconds)
     std::printf(", %.6f s simulated on the chip that took longest", *render->simulated_seconds);
   std::printf(", %.2f s CPU\n", render->cpu_seconds);
@@ -121,6 +122,7 @@ void RenderCommand::run() {
   outputs.require_writable(observation.outputs());
   require_writable(request.options.observation, request.options.chip);
   const Scene loaded = load_scene_for_film(scene, size);
+  outputs.require_no_input(inputs_of(chip, loaded), observation.outputs());
   request.traversal_reason = choose_tree_for(loaded, request.options);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
@@ -138,12 +140,12 @@ void RenderCommand::run() {
   });
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
   if (loaded.degenerate_triangles > 0)
-    std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", scene.c_str(),
+    std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", printable(scene).c_str(),
                  loaded.degenerate_triangles);
-  std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
-              loaded.film.width, loaded.film.height, request.options.work.samples,
-              name_of(request.options.program.program), request.options.program.n,
-              option_text(request.options.program, "buffer").c_str(),
+  std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n",
+              printable(loaded.name).c_str(), loaded.film.width, loaded.film.height,
+              request.options.work.samples, name_of(request.options.program.program),
+              request.options.program.n, option_text(request.options.program, "buffer").c_str(),
               native ? "native" : request.options.chip.preset.c_str());
   std::fputs(render_table(request, result).c_str(), stdout);
   if (outputs.path("--exr").empty() && outputs.path("--png").empty())

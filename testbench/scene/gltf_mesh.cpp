@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
@@ -240,11 +241,38 @@ class Collector {
   std::vector<bool> visited_;
 };
 
+/// "a b.bin" of "a%20b.bin" (RFC 3986, section 2.1).
+std::string without_percents(const std::string& uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    int code = 0;
+    const char* const digits = uri.data() + i + 1;
+    const bool is_code = uri[i] == '%' && i + 2 < uri.size() &&
+                         std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2;
+    text += is_code ? static_cast<char>(code) : uri[i];
+    if (is_code) i += 2;
+  }
+  return text;
+}
+
+/// The file and those that its buffers and images name.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const tinygltf::Model& model) {
+  std::vector<std::filesystem::path> files = {file};
+  const auto add = [&](const std::string& uri) {
+    if (!uri.empty() && !tinygltf::IsDataURI(uri))
+      files.push_back(file.parent_path() / without_percents(uri));
+  };
+  for (const tinygltf::Buffer& buffer : model.buffers) add(buffer.uri);
+  for (const tinygltf::Image& image : model.images) add(image.uri);
+  return files;
+}
+
 }  // namespace
 
 GltfFile load_gltf(const std::filesystem::path& file) {
   const tinygltf::Model model = parse_gltf(file);
   GltfFile result;
+  result.mesh.files = files_of(file, model);
   Collector(file, model, result).collect();
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <vector>
 
 #include "testbench/scene/scene.hpp"
@@ -14,6 +15,7 @@ struct Mesh {
   std::vector<Triangle> triangles;
   std::size_t degenerate_triangles =
       0;  ///< number of triangles dropped because they have no area; see is_degenerate()
+  std::vector<std::filesystem::path> files;  ///< that the loader read or that these name
 };
 
 /// The largest |coordinate| that a mesh may have: its cube is still a finite double.

@@ -39,6 +39,7 @@ class CheckedMaterialReader : public tinyobj::MaterialReader {
                   std::map<std::string, int>* indices, std::string* /*warning*/,
                   std::string* error) override {
     const std::filesystem::path file = obj_file_.parent_path() / name;
+    files_.push_back(file);
     const std::string text = read_text(file, " (named by mtllib in " + obj_file_.string() + ")");
     const std::vector<Material> scanned = scan_materials(file, text);
     materials_.insert(materials_.end(), scanned.begin(), scanned.end());
@@ -54,10 +55,12 @@ class CheckedMaterialReader : public tinyobj::MaterialReader {
   }
 
   std::vector<Material>& materials() { return materials_; }
+  const std::vector<std::filesystem::path>& files() const { return files_; }
 
  private:
   std::filesystem::path obj_file_;
   std::vector<Material> materials_;
+  std::vector<std::filesystem::path> files_;
 };
 
 using Polygon = std::vector<glm::dvec3>;
@@ -203,6 +206,8 @@ Mesh load_obj_mesh(const std::filesystem::path& obj_file) {
     throw InputError(obj_file.string() + ": found no triangle (" + std::to_string(mesh.degenerate_triangles) +
                      " without area); allowed: a mesh of one triangle or more");
   }
+  mesh.files = material_reader.files();
+  mesh.files.push_back(obj_file);
   keep_used_materials(material_reader.materials(), mesh);
   return mesh;
 }

@@ -49,8 +49,9 @@ struct Scene {
   Camera camera;
   FilmSize film;
   std::vector<Material> materials;
-  std::vector<Triangle> triangles;       ///< none of zero area
-  std::size_t degenerate_triangles = 0;  ///< number of triangles of zero area that the loader dropped
+  std::vector<Triangle> triangles;           ///< none of zero area
+  std::size_t degenerate_triangles = 0;      ///< number of triangles of zero area that the loader dropped
+  std::vector<std::filesystem::path> files;  ///< that the loader read or that these name
 };
 
 }  // namespace testbench

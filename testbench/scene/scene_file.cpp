@@ -269,6 +269,7 @@ void add_mesh(const TableReader& table, const std::filesystem::path& directory, 
   const GltfFile file = load_mesh_file(directory / table.text("file"));
   if (file.camera && !camera) camera = moved(file.camera->camera, transform);
   const Mesh& mesh = file.mesh;
+  scene.files.insert(scene.files.end(), mesh.files.begin(), mesh.files.end());
   const auto first_material = static_cast<std::int32_t>(scene.materials.size());
   scene.materials.insert(scene.materials.end(), mesh.materials.begin(), mesh.materials.end());
   scene.degenerate_triangles += mesh.degenerate_triangles;
@@ -342,6 +343,7 @@ Scene gltf_scene(const std::filesystem::path& file) {
   scene.materials = std::move(gltf.mesh.materials);
   scene.triangles = std::move(gltf.mesh.triangles);
   scene.degenerate_triangles = gltf.mesh.degenerate_triangles;
+  scene.files = std::move(gltf.mesh.files);
   require_renderable(scene, file.string());
   return scene;
 }
@@ -355,6 +357,7 @@ Scene load_scene(const std::filesystem::path& path) {
   TableReader(file.string(), "", root).require_only({"camera", "film", "mesh"});
 
   Scene scene;
+  scene.files = {file};
   const std::filesystem::path absolute = std::filesystem::absolute(file).lexically_normal();
   scene.name = (file.filename() == "scene.toml" ? absolute.parent_path().filename() : file.stem()).string();
   scene.film = read_film(root, file.string());

@@ -139,7 +139,8 @@ std::string statistics_csv(const Json& statistics) {
 }
 
 std::string statistics_json(const Json& statistics) {
-  return statistics.dump(2) + "\n";
+  // The scene's path may be no UTF-8, which costs the path but not the statistics.
+  return statistics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string statistics_for_file(const std::string& path, const Json& statistics) {

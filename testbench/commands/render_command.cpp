@@ -9,6 +9,7 @@
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/commands/wave_options.hpp"
+#include "testbench/film/black_film.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/observe/observation.hpp"
 #include "testbench/scene/scene_file.hpp"
@@ -18,6 +19,7 @@
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"
 #include "testbench/system/progress_bar.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {
@@ -69,6 +71,10 @@ void RenderCommand::write_image(const Film& film,
   if (!outputs.path("--png").empty()) write_png(outputs.path("--png"), film);
 }
 
+void note_if_black(const Scene& loaded, const Film& film) {
+  if (is_black(film)) print_note("every pixel is black: " + why_black(loaded));
+}
+
 /// Each rank renders its share of the samples on a machine of its own.
 void RenderCommand::run_on_ranks(Ranks& ranks) {
   std::string error;
@@ -107,6 +113,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       {"csx600.image_sha256", render->film.sha256()}};
   write_image(render->film, provenance);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
+  note_if_black(*loaded, render->film);
   std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments",
               printable(loaded->name).c_str(), loaded->film.width, loaded->film.height,
               request.options.work.samples, ranks.size(), static_cast<unsigned long long>(render->segments));
@@ -138,6 +145,7 @@ void RenderCommand::run() {
   outputs.write("--stats", [&] {
     return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
   });
+  note_if_black(loaded, result.film);
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
   if (loaded.degenerate_triangles > 0)
     std::fprintf(stderr, "note: %s: %zu triangles without area were left out\n", printable(scene).c_str(),

@@ -78,7 +78,8 @@ void require_statistics_format(const std::string& format, const std::string& ori
 
 Json read_statistics(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
+  std::error_code ignored;
+  if (!file || std::filesystem::is_directory(path, ignored))
     throw InputError(path + ": cannot be read; allowed is a statistics file");
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   return parse_statistics(text, path);

@@ -16,6 +16,7 @@
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/progress_bar.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {
@@ -200,6 +201,9 @@ void BenchErrorCommand::run() {
   options.level = level.level();
   const ExrFilm truth = load_reference();
   const Scene loaded = load(truth);
+  std::vector<InputName> inputs = inputs_of(chip, loaded);
+  inputs.emplace_back("--reference", reference);
+  outputs.require_no_input(inputs);
   const std::vector<CurvePoint> points = measure(loaded, truth);
   print_notes(loaded);
   std::printf("%s, %d x %d, light's pixels left out, reference %s\n", loaded.name.c_str(), loaded.film.width,
@@ -212,7 +216,7 @@ void BenchErrorCommand::run() {
   if (can_draw_charts())
     write_chart(plot, make_chart("Error against time: " + loaded.name, points, native_only));
   else
-    std::fprintf(stderr, "note: --plot %s was left out: gnuplot is not installed\n", plot.c_str());
+    print_note("--plot " + plot + " was left out: gnuplot is not installed");
 }
 
 }  // namespace

@@ -61,6 +61,7 @@ void BenchReferenceCommand::run() {
   options.chip = chip.chip();
   options.level = level.level();
   const Scene loaded = load_scene_for_film(scene, size);
+  outputs.require_no_input(inputs_of(chip, loaded));
   const RenderResult result = render(loaded);
   std::map<std::string, std::string> attributes = render_provenance({scene, options, true}, result);
   attributes[kSeedAttribute] = std::to_string(options.program.seed);

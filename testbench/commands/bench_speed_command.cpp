@@ -14,6 +14,7 @@
 #include "testbench/paper/paper.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/statistics/statistics_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"
 #include "testbench/system/processes.hpp"
@@ -233,6 +234,7 @@ std::string to_csv(const std::vector<Variant>& variants) {
 void BenchSpeedCommand::run() {
   outputs.require_writable();
   const Scene loaded = load_scene(scene);
+  outputs.require_no_input(inputs_of(chip, loaded));
   std::vector<Variant> variants = make_variants(loaded);
   measure(loaded, variants);
   std::printf("%s, %d x %d, %d samples a pixel, chip %s; medians of %d runs in turn, CPU time\n\n",
@@ -243,7 +245,7 @@ void BenchSpeedCommand::run() {
   print_group(variants, "PEs", "96");
   print_group(variants, "level", cn::name_of(variants.back().options.level));
   print_notes(loaded);
-  outputs.write("--json", [&] { return to_json(variants).dump(2) + "\n"; });
+  outputs.write("--json", [&] { return statistics_json(to_json(variants)); });
   outputs.write("--csv", [&] { return to_csv(variants); });
 }
 

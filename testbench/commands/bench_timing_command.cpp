@@ -98,6 +98,7 @@ void BenchTimingCommand::run() const {
   options.level = level.level();
   options.work.samples = samples;
   Scene loaded = load_scene(scene);
+  outputs.require_no_input(inputs_of(chip, loaded));
   loaded.film = film;
   const std::vector<TimingPoint> points = timing_points(options);
   const std::vector<TimingComparison> comparisons = measure(loaded, points);

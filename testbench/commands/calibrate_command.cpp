@@ -73,6 +73,7 @@ void CalibrateCommand::run() const {
   const std::vector<Assumptions> all = alternatives
                                            ? paper_alternatives(base, load_scene_for_film(closed_scene, size))
                                            : std::vector<Assumptions>{base};
+  for (const Assumptions& assumptions : all) outputs.require_no_input(inputs_of(chip, assumptions.scene));
   std::printf("Three constants fitted to three cells (");
   for (const PaperCell& cell : fitted_cells())
     std::printf("%s%s", cell.row == 1 && cell.program == path_tracer::Program::segments ? "" : "; ",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <thread>
@@ -38,6 +39,18 @@ void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {
       ->type_name("{" + CLI::detail::join(model::preset_names(), ", ") + "}|FILE")
       ->capture_default_str();
   settings_.add_to(command);
+}
+
+std::vector<InputName> ChipOptions::inputs() const {
+  if (std::filesystem::path(chip_).extension() != ".toml") return {};
+  return {{"--chip", chip_}};
+}
+
+std::vector<InputName> inputs_of(const ChipOptions& chip, const Scene& scene) {
+  std::vector<InputName> inputs = chip.inputs();
+  for (const std::filesystem::path& file : scene.files)
+    inputs.emplace_back("scene " + scene.name, file.string());
+  return inputs;
 }
 
 model::ChipConfig SetOptions::chip(const std::string& name) const {

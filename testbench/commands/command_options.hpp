@@ -7,6 +7,7 @@
 #include "firmware/cn/simd/level.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
@@ -28,6 +29,8 @@ class ChipOptions {
   void add_to(CLI::App& command, const std::string& default_chip);
   /// Throws InputError.
   model::ChipConfig chip() const { return settings_.chip(chip_); }
+  /// The chip's file, if it is one.
+  std::vector<InputName> inputs() const;
 
  private:
   std::string chip_;
@@ -72,6 +75,9 @@ void add_scene_argument(CLI::App& command, std::string& scene);
 
 /// --size, for load_scene_for_film().
 void add_size_option(CLI::App& command, std::string& size);
+
+/// The chip's file and the scene's, for OutputFiles::require_no_input().
+std::vector<InputName> inputs_of(const ChipOptions& chip, const Scene& scene);
 
 /// Loads a scene. Its film has the size `size`, "480x480", unless that is empty. Throws InputError.
 Scene load_scene_for_film(const std::string& path, const std::string& size, bool is_outside_allowed = false);

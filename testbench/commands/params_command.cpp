@@ -19,6 +19,7 @@ struct ParamsCommand {
 
   void run() const {
     outputs.require_writable();
+    outputs.require_no_input(chip.inputs());
     const model::ChipConfig config = chip.chip();
     std::fputs(text(config).c_str(), stdout);
     outputs.write("--json", [&] { return json(config); });

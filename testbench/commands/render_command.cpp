@@ -9,6 +9,7 @@
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/commands/wave_options.hpp"
+#include "testbench/film/black_film.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/observe/observation.hpp"
 #include "testbench/scene/scene_file.hpp"
@@ -18,6 +19,7 @@
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"
 #include "testbench/system/progress_bar.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {
@@ -70,6 +72,10 @@ void RenderCommand::write_image(const Film& film,
   if (!outputs.path("--png").empty()) write_png(outputs.path("--png"), film);
 }
 
+void note_if_black(const Scene& loaded, const Film& film) {
+  if (is_black(film)) print_note("every pixel is black: " + why_black(loaded));
+}
+
 /// Each rank renders its share of the samples on a machine of its own.
 void RenderCommand::run_on_ranks(Ranks& ranks) {
   std::string error;
@@ -81,6 +87,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
     if (ranks.is_first()) outputs.require_writable(observation.outputs());
     loaded = load_scene_for_film(scene, size, is_outside_allowed);
+    if (ranks.is_first()) outputs.require_no_input(inputs_of(chip, *loaded));
     request.traversal_reason = choose_tree_for(*loaded, request.options);
   } catch (const InputError& wrong) {
     error = wrong.what();
@@ -106,11 +113,12 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       {"csx600.segments", std::to_string(render->segments)},
       {"csx600.image_sha256", render->film.sha256()}};
   write_image(render->film, provenance);
-  outputs.write("--stats", [&] { return render->statistics.dump(2) + "\n"; });
+  outputs.write("--stats", [&] { return statistics_json(render->statistics); });
   print_notes(*loaded);
-  std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments", loaded->name.c_str(),
-              loaded->film.width, loaded->film.height, request.options.work.samples, ranks.size(),
-              static_cast<unsigned long long>(render->segments));
+  note_if_black(*loaded, render->film);
+  std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments",
+              printable(loaded->name).c_str(), loaded->film.width, loaded->film.height,
+              request.options.work.samples, ranks.size(), static_cast<unsigned long long>(render->segments));
   if (render->simulated_seconds)
     std::printf(", %.6f s simulated on the chip that took longest", *render->simulated_seconds);
   std::printf(", %.2f s CPU\n", render->cpu_seconds);
@@ -123,6 +131,7 @@ void RenderCommand::run() {
   outputs.require_writable(observation.outputs());
   require_writable(request.options.observation, request.options.chip);
   const Scene loaded = load_scene_for_film(scene, size, is_outside_allowed);
+  outputs.require_no_input(inputs_of(chip, loaded), observation.outputs());
   request.traversal_reason = choose_tree_for(loaded, request.options);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
@@ -138,12 +147,13 @@ void RenderCommand::run() {
   outputs.write("--stats", [&] {
     return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
   });
+  note_if_black(loaded, result.film);
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
   print_notes(loaded);
-  std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n", loaded.name.c_str(),
-              loaded.film.width, loaded.film.height, request.options.work.samples,
-              name_of(request.options.program.program), request.options.program.n,
-              option_text(request.options.program, "buffer").c_str(),
+  std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n",
+              printable(loaded.name).c_str(), loaded.film.width, loaded.film.height,
+              request.options.work.samples, name_of(request.options.program.program),
+              request.options.program.n, option_text(request.options.program, "buffer").c_str(),
               native ? "native" : request.options.chip.preset.c_str());
   std::fputs(render_table(request, result).c_str(), stdout);
   if (outputs.path("--exr").empty() && outputs.path("--png").empty())

@@ -142,6 +142,7 @@ void ReproduceCommand::run() const {
   outputs.require_writable();
   const RenderOptions options = make_options();
   const Scene loaded = load_scene(scene);
+  outputs.require_no_input(inputs_of(chip, loaded));
   if (image) {
     measure_image(loaded, options);
     return;

@@ -1,11 +1,14 @@
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/named_values.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/scene/generated_scene.hpp"
 #include "testbench/scene/save_scene.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {
@@ -14,11 +17,23 @@ struct SceneCommand {
   GeneratedScene kind = GeneratedScene::blob;
   int triangles = 10000;
   std::string output;
+  bool force = false;
 
   void run() const {
+    if (!force) require_no_scene();
     const Scene scene = generate_scene(kind, triangles);
     save_scene(scene, output);
     std::printf("%s: %zu triangles\n", output.c_str(), scene.triangles.size());
+  }
+
+ private:
+  void require_no_scene() const {
+    for (const char* const name : kSavedSceneFiles)
+      if (const std::filesystem::path file = std::filesystem::path(output) / name;
+          std::filesystem::exists(std::filesystem::symlink_status(file)))
+        throw InputError("--output: found " + file.string() +
+                         ", which is there already; allowed is a directory without a scene, or --force to "
+                         "replace it");
   }
 };
 
@@ -33,7 +48,11 @@ void add_scene_command(CLI::App& app) {
   in_range(command.add_option("--triangles", state->triangles, "About how many"), kLeastGeneratedTriangles,
            kMostGeneratedTriangles)
       ->capture_default_str();
-  command.add_option("-o,--output", state->output, "Directory to write")->type_name("DIRECTORY")->required();
+  command.add_option("-o,--output", state->output, "Directory to write")
+      ->check(error_of_no_file, "")
+      ->type_name("DIRECTORY")
+      ->required();
+  command.add_flag("--force", state->force, "Replace a scene that is there already");
   command.callback([state] { state->run(); });
 }
 

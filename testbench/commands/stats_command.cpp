@@ -24,6 +24,7 @@ struct StatsCommand {
       return;
     }
     outputs.require_writable();
+    outputs.require_no_input({{"the statistics", file}});
     const std::string& output = outputs.path("--output");
     const nlohmann::ordered_json statistics = read_statistics(file);
     if (output.empty()) std::fputs(statistics_text(statistics).c_str(), stdout);

@@ -5,12 +5,14 @@
 
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/sweep/sweep_run.hpp"
 #include "testbench/sweep/sweep_table.hpp"
 #include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"
 #include "testbench/system/progress_bar.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {
@@ -77,7 +79,8 @@ void SweepCommand::forget_failed(const Sweep& sweep, PointStore& store) const {
 void SweepCommand::write_tables(const fs::path& directory, const Sweep& sweep,
                                 const PointStore& store) const {
   const Json json = sweep_json(sweep, store);
-  write_bytes_atomically(directory / "sweep.json", json.dump(1) + "\n");
+  write_bytes_atomically(directory / "sweep.json",
+                         json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   write_bytes_atomically(directory / "sweep.csv", sweep_csv(json));
 }
 
@@ -98,8 +101,7 @@ Counts count(const Sweep& sweep, const PointStore& store) {
       counts.replayed += (*line)["how"] == "replayed";
       counts.audited += (*line)["audited"] == true;
     } else if (++counts.failed <= kFailuresShown) {
-      std::fprintf(stderr, "note: %s: %s\n", describe_point(sweep, point).c_str(),
-                   (*line)["error"].get<std::string>().c_str());
+      print_note(describe_point(sweep, point) + ": " + (*line)["error"].get<std::string>());
     }
   }
   return counts;
@@ -112,6 +114,8 @@ std::size_t count_finished(const Sweep& sweep, const PointStore& store) {
 
 void SweepCommand::run_first(const Sweep& sweep, Ranks& ranks) const {
   const fs::path directory = output.empty() ? fs::path(file).stem().string() + ".sweep" : output;
+  for (const char* const name : kSweepFiles)
+    require_outputs_apart({{"--output", (directory / name).string()}}, {{"the sweep file", file}});
   PointStore store(directory, build_digest());
   for (const char* const name : {"sweep.json", "sweep.csv"}) require_writable(directory / name);
   if (retry_failed) forget_failed(sweep, store);
@@ -150,7 +154,7 @@ void SweepCommand::run() {
   try {
     run_first(*sweep, ranks);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "csx600: %s\n", error.what());
+    print_error(error.what());
     ranks.abort(dynamic_cast<const InputError*>(&error) != nullptr ? 2 : 1);
   }
 }
@@ -165,6 +169,7 @@ void add_sweep_command(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   command.add_option("-o,--output", state->output, "Directory for sweep.csv, sweep.json and points.jsonl")
+      ->check(error_of_no_file, "")
       ->type_name("DIRECTORY")
       ->default_str("the file's name with .sweep");
   command.add_option("--set", state->settings, "One base value, key=value; may be repeated")

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "testbench/commands/named_values.hpp"
+#include "testbench/observe/wave_files.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -100,6 +101,7 @@ void ObservationOption::add_to(CLI::App& command) {
   command
       .add_option("--waves", waves_,
                   "Write waves (.vcd, or .fst by way of vcd2fst) and a GTKWave view beside them (.gtkw)")
+      ->check(error_of_no_file, "")
       ->type_name("FILE")
       ->group(group);
   command
@@ -134,17 +136,24 @@ void ObservationOption::add_to(CLI::App& command) {
   command
       .add_option("--transactions", transactions_,
                   "Write a line of JSON for each PIO request and host transfer")
+      ->check(error_of_no_file, "")
       ->type_name("FILE")
       ->group(group);
   command
       .add_option("--timeline", timeline_,
                   "Write kernels, waits and transfers as trace events (JSON) for Perfetto or about:tracing")
+      ->check(error_of_no_file, "")
       ->type_name("FILE")
       ->group(group);
 }
 
 std::vector<OutputOption> ObservationOption::outputs() const {
-  return {{"--waves", waves_}, {"--transactions", transactions_}, {"--timeline", timeline_}};
+  std::vector<OutputOption> files = {
+      {"--waves", waves_}, {"--transactions", transactions_}, {"--timeline", timeline_}};
+  if (!waves_.empty())
+    for (const std::filesystem::path& file : files_beside_waves(waves_))
+      files.emplace_back("--waves (" + file.filename().string() + ")", file.string());
+  return files;
 }
 
 void ObservationOption::require_waves() const {

@@ -18,7 +18,7 @@ class ObservationOption {
   void add_to(CLI::App& command);
 
   bool any() const { return !waves_.empty() || !transactions_.empty() || !timeline_.empty(); }
-  /// The files, for OutputFiles::require_writable().
+  /// The files, with those that waves bring along, for OutputFiles::require_writable().
   std::vector<OutputOption> outputs() const;
   /// Throws InputError for what cannot be read as a window, a block or a PE.
   ObservationOptions options(const model::ChipConfig& chip) const;

@@ -14,7 +14,7 @@ void finish_one(std::optional<File>& file, std::string& failures) {
   try {
     file->finish();
   } catch (const RunError& error) {
-    failures += (failures.empty() ? "" : "\n") + std::string(error.what());
+    failures += (failures.empty() ? "" : "; ") + std::string(error.what());
   }
 }
 

@@ -1,5 +1,7 @@
 #include "testbench/observe/timeline.hpp"
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -10,6 +12,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kPicosecondsPerMicrosecond = 1e6;
 constexpr int kProcess = 1;  // the format's process ID; stands for the chip
+
+/// Microseconds as the format wants them. Viewers take the whole nanoseconds of us * 1000.0; a product that
+/// is rounded below a whole number would let an event begin before its forerunner ends, so the number is then
+/// written as the next larger double.
+double microseconds(std::uint64_t picoseconds) {
+  const double number = double(picoseconds) / kPicosecondsPerMicrosecond;
+  const auto read = static_cast<std::uint64_t>(number * 1000.0);
+  return read < picoseconds / 1000 ? std::nextafter(number, std::numeric_limits<double>::infinity()) : number;
+}
 
 void add_label(Json& arguments, const cn::Label& label) {
   if (label.stage == nullptr) return;
@@ -95,8 +106,8 @@ void Timeline::add(Track track, const std::string& name, const char* category, m
          {"ph", "X"},
          {"pid", kProcess},
          {"tid", int(track)},
-         {"ts", double(first) / kPicosecondsPerMicrosecond},
-         {"dur", double(last - first) / kPicosecondsPerMicrosecond},
+         {"ts", microseconds(first)},
+         {"dur", microseconds(last - first)},
          {"args", std::move(arguments)}});
 }
 

@@ -28,6 +28,13 @@ std::filesystem::path sibling(const std::filesystem::path& file, const std::stri
   return path.replace_extension().concat(suffix);
 }
 
+/// "a.control_unit_state.txt": names of the values of a signal.
+std::filesystem::path filter_file(const std::filesystem::path& waves, const model::WaveSignalInfo& signal) {
+  std::string name = std::string(signal.scope) + "_" + std::string(signal.name);
+  std::replace(name.begin(), name.end(), '.', '_');
+  return sibling(waves, "." + name + ".txt");
+}
+
 void add_names(std::vector<model::ValueName>& names, std::uint64_t first,
                const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
@@ -38,6 +45,14 @@ void add_names(std::vector<model::ValueName>& names, std::uint64_t first,
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> files_beside_waves(const std::filesystem::path& waves) {
+  std::vector<std::filesystem::path> files = {sibling(waves, ".gtkw")};
+  for (const model::WaveSignalInfo& signal : model::wave_signal_table())
+    if (!signal.fixed_names.empty() || signal.names != model::WaveNames::none)
+      files.push_back(filter_file(waves, signal));
+  return files;
+}
 
 void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip) {
   const std::filesystem::path extension = options.file.extension();
@@ -114,20 +129,20 @@ void WaveFiles::write_view() const {
   view.wave_file = file_.filename().string();
   view.signals = probe_->signals();
   set_span(view);
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
   for (const model::WaveSignalInfo& signal : model::wave_signal_table()) {
     const std::vector<model::ValueName> names = value_names(signal);
     if (names.empty() || !probe_->shows(signal.id)) continue;
-    std::string suffix = "." + std::string(signal.scope) + "_" + std::string(signal.name) + ".txt";
-    std::replace(suffix.begin() + 1, suffix.end() - 4, '.', '_');
-    const std::filesystem::path file = sibling(file_, suffix);
+    const std::filesystem::path file = filter_file(file_, signal);
     std::ostringstream filter;
     model::write_value_filter(filter, names);
-    write_bytes_atomically(file, filter.str());
+    files.emplace_back(file, filter.str());
     view.filter_files.emplace_back(signal.id, file.filename().string());
   }
   std::ostringstream text;
   model::write_wave_view(text, view);
-  write_bytes_atomically(sibling(file_, ".gtkw"), text.str());
+  files.emplace_back(sibling(file_, ".gtkw"), text.str());
+  write_together(files);
 }
 
 }  // namespace testbench

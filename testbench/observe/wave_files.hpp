@@ -14,6 +14,10 @@
 
 namespace testbench {
 
+/// The files that come with the trace `waves`: the view, and every filter that a selection of signals may
+/// need.
+std::vector<std::filesystem::path> files_beside_waves(const std::filesystem::path& waves);
+
 /// Throws InputError if the trace or its view cannot be written, or if the selection or a window is empty.
 void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip);
 

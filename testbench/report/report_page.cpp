@@ -112,8 +112,9 @@ std::string fill(std::string_view page,
 }  // namespace
 
 std::string report_page(const std::string& run_or_sweep, const std::string& image) {
-  const fs::path path =
-      fs::is_directory(run_or_sweep) ? fs::path(run_or_sweep) / "sweep.json" : fs::path(run_or_sweep);
+  std::error_code ignored;  // read_input_file() says why a path cannot be read
+  const fs::path path = fs::is_directory(run_or_sweep, ignored) ? fs::path(run_or_sweep) / "sweep.json"
+                                                                : fs::path(run_or_sweep);
   const Json json = parse(path);
   require_parts(path, json);
   require_current_names(path, json);

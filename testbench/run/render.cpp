@@ -26,7 +26,7 @@ auto with_input_errors(Work&& work) {
     throw InputError(error.what());
   } catch (const cn::PolyMemoryOverflow& error) {
     const std::string map = error.map().substr(0, error.map().find_last_not_of('\n') + 1);
-    throw InputError(std::string(error.what()) + "; buffers of a PE:\n" + map);
+    throw InputError(std::string(error.what()) + "; buffers of a PE:", map);
   } catch (const cn::MachineFault& fault) {
     throw RunError(fault.what());
   }

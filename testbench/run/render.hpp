@@ -37,7 +37,7 @@ struct RenderResult {
   Film film;
   path_tracer::RunCounts counts;
   std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip
-  std::string observation_failures;    ///< files that could not be completed, one line each
+  std::string observation_failures;    ///< files that could not be completed, in one line
   double cpu_seconds = 0;              ///< of the run itself, without loading and writing
   double wall_seconds = 0;
 };

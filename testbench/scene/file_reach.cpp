@@ -27,6 +27,7 @@ bool FileReach::holds(const std::filesystem::path& file, const std::string& name
   if (!std::filesystem::is_regular_file(status))
     throw InputError(named_by + ": found " + file.string() +
                      ", which cannot be read; allowed: a regular file");
+  remember(file);
   return true;
 }
 

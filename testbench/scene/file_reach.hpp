@@ -1,12 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace testbench {
 
 /// Which files a scene may read: those below its own folder, so that a scene from a stranger shows nothing
-/// else of the machine. --allow-outside lifts the limit.
+/// else of the machine. --allow-outside lifts the limit. Remembers, over all its copies, the files that were
+/// asked for, so that no output takes the place of one.
 class FileReach {
  public:
   /// @param folder the folder of the scene, or of a mesh file that is rendered without one
@@ -20,9 +23,15 @@ class FileReach {
   /// Throws InputError unless holds(file).
   void require(const std::filesystem::path& file, const std::string& named_by) const;
 
+  /// Remembers a file that the scene names and the program does not read, such as an image.
+  void remember(const std::filesystem::path& file) const { files_->push_back(file); }
+  const std::vector<std::filesystem::path>& files() const { return *files_; }
+
  private:
   std::filesystem::path folder_;
   bool is_outside_allowed_;
+  std::shared_ptr<std::vector<std::filesystem::path>> files_ =
+      std::make_shared<std::vector<std::filesystem::path>>();
 };
 
 }  // namespace testbench

@@ -95,6 +95,18 @@ GltfDocument::GltfDocument(const std::filesystem::path& file, const FileReach& r
   require_version();
   check_gltf(file_, root_, root_, "glTF", "");
   require_supported();
+  remember_images();
+}
+
+void GltfDocument::remember_images() const {
+  const nlohmann::json* const images = find_gltf(root_, "images");
+  if (images == nullptr) return;
+  for (const nlohmann::json& image : *images) {
+    const nlohmann::json* const uri = find_gltf(image, "uri");
+    if (uri == nullptr) continue;
+    const std::optional<std::string> name = decode_percent(uri->get<std::string>());
+    if (name && name->compare(0, 5, "data:") != 0) reach_.remember(path_.parent_path() / *name);
+  }
 }
 
 /// The JSON of a file: all of a .gltf file, the first chunk of a .glb (specification, section 4). Which of

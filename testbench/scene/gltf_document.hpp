@@ -49,6 +49,7 @@ class GltfDocument {
   const Notes& notes() const { return notes_; }
 
  private:
+  void remember_images() const;
   std::string json_text(std::string bytes);
   void require_version() const;
   void require_supported() const;

@@ -87,12 +87,17 @@ std::string toml_of(const Scene& scene) {
 
 void save_scene(const Scene& scene, const std::filesystem::path& directory) {
   std::error_code error;
-  std::filesystem::create_directories(directory, error);
+  const bool is_new = std::filesystem::create_directories(directory, error);
   if (!std::filesystem::is_directory(directory))
     throw InputError(directory.string() + ": cannot be made; allowed: a directory that can be written");
-  write_bytes_atomically(directory / "mesh.mtl", mtl_of(scene));
-  write_bytes_atomically(directory / "mesh.obj", obj_of(scene));
-  write_bytes_atomically(directory / "scene.toml", toml_of(scene));
+  try {
+    write_together({{directory / "mesh.mtl", mtl_of(scene)},
+                    {directory / "mesh.obj", obj_of(scene)},
+                    {directory / "scene.toml", toml_of(scene)}});
+  } catch (...) {
+    if (is_new) std::filesystem::remove(directory, error);  // only if it is empty
+    throw;
+  }
 }
 
 }  // namespace testbench

@@ -6,9 +6,12 @@
 
 namespace testbench {
 
+/// What save_scene() writes.
+inline constexpr const char* kSavedSceneFiles[] = {"mesh.mtl", "mesh.obj", "scene.toml"};
+
 /// Writes a scene that load_scene() reads back to the last bit: scene.toml, mesh.obj and mesh.mtl in
-/// `directory`, which is created if it is missing. scene.toml is written last, so a scene with a scene.toml
-/// is complete. Throws InputError when the directory cannot be created, RunError when writing fails.
+/// `directory`, which is created if it is missing. All three or none
+/// are written. Throws InputError when the directory cannot be created, RunError when writing fails.
 void save_scene(const Scene& scene, const std::filesystem::path& directory);
 
 }  // namespace testbench

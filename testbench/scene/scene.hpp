@@ -51,9 +51,10 @@ struct Scene {
   Camera camera;
   FilmSize film;
   std::vector<Material> materials;
-  std::vector<Triangle> triangles;       ///< none of zero area
-  std::size_t degenerate_triangles = 0;  ///< number of triangles of zero area that the loader dropped
-  Notes notes;                           ///< what the loader left out or replaced
+  std::vector<Triangle> triangles;           ///< none of zero area
+  std::size_t degenerate_triangles = 0;      ///< number of triangles of zero area that the loader dropped
+  Notes notes;                               ///< what the loader left out or replaced
+  std::vector<std::filesystem::path> files;  ///< that the loader read or that these name
 };
 
 }  // namespace testbench

@@ -204,6 +204,7 @@ OfMeshes add_meshes(const toml::table& root, const std::filesystem::path& file, 
                  result.camera))
       result.has_default_material = true;
   }
+  scene.files.insert(scene.files.end(), reach.files().begin(), reach.files().end());
   return result;
 }
 
@@ -222,9 +223,11 @@ void add_light_with_note(Scene& scene, const std::filesystem::path& file) {
 
 /// The scene of a mesh file that is opened directly, without a scene.toml.
 Scene mesh_scene(const std::filesystem::path& file, bool is_outside_allowed) {
-  GltfFile mesh_file =
-      load_mesh_file(file, {FileReach(file.parent_path(), is_outside_allowed), std::nullopt});
+  const FileReach reach(file.parent_path(), is_outside_allowed);
+  GltfFile mesh_file = load_mesh_file(file, {reach, std::nullopt});
   Scene scene;
+  scene.files = reach.files();
+  scene.files.push_back(file);
   scene.name = file.stem().string();
   scene.film = {kDefaultFilmSide, kDefaultFilmSide};
   scene.materials = std::move(mesh_file.mesh.materials);
@@ -249,6 +252,7 @@ Scene toml_scene(const std::filesystem::path& file, bool is_outside_allowed) {
   TableReader(file.string(), "", root).require_only({"camera", "film", "mesh"});
 
   Scene scene;
+  scene.files = {file};
   const std::filesystem::path absolute = std::filesystem::absolute(file).lexically_normal();
   scene.name = (file.filename() == "scene.toml" ? absolute.parent_path().filename() : file.stem()).string();
   scene.film = read_film(root, file.string());

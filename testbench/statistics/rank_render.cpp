@@ -18,7 +18,9 @@ std::string render_part(const Scene& scene, RenderRequest request, const path_tr
   try {
     const RenderResult result = request.native ? render_natively(scene, request.options, progress)
                                                : render_on_chip(scene, request.options, progress);
-    return Json{{"statistics", render_statistics(request, result)}}.dump() + "\n" + result.film.bytes();
+    return Json{{"statistics", render_statistics(request, result)}}.dump(-1, ' ', false,
+                                                                         Json::error_handler_t::replace) +
+           "\n" + result.film.bytes();
   } catch (const InputError& error) {
     return Json{{"error", error.what()}, {"input", true}}.dump() + "\n";
   } catch (const std::exception& error) {

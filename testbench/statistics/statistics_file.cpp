@@ -78,7 +78,8 @@ void require_statistics_format(const std::string& format, const std::string& ori
 
 Json read_statistics(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
+  std::error_code ignored;
+  if (!file || std::filesystem::is_directory(path, ignored))
     throw InputError(path + ": cannot be read; allowed is a statistics file");
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   return parse_statistics(text, path);
@@ -139,7 +140,8 @@ std::string statistics_csv(const Json& statistics) {
 }
 
 std::string statistics_json(const Json& statistics) {
-  return statistics.dump(2) + "\n";
+  // The scene's path may be no UTF-8, which costs the path but not the statistics.
+  return statistics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string statistics_for_file(const std::string& path, const Json& statistics) {

@@ -161,6 +161,9 @@ class SweepReader {
       refuse(table, key, "a range with none or several of step, factor, count", "exactly one of them");
     const double from = number(table, key, "from");
     const double to = number(table, key, "to");
+    if (from == to)
+      refuse(table, key, "a range from " + model::value_text(from) + " to itself",
+             "two different ends, or a list of one value");
     const bool whole = table["from"].is_integer() && table["to"].is_integer();
     if (table.contains("step")) return stepped(table, key, from, to);
     if (table.contains("factor")) return multiplied(table, key, from, to);

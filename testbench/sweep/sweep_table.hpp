@@ -8,6 +8,9 @@
 
 namespace testbench {
 
+/// What a sweep writes into its directory.
+inline constexpr const char* kSweepFiles[] = {"sweep.json", "sweep.csv", "points.jsonl"};
+
 inline constexpr const char* kSweepFormat = "csx600-sweep-1";
 
 /// All points in the order of the sweep, those that are not finished as status "missing":

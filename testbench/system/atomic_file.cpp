@@ -1,8 +1,14 @@
 #include "testbench/system/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <deque>
 #include <exception>
 #include <string>
 #include <system_error>
@@ -20,24 +26,81 @@ namespace fs = std::filesystem;
                    "; allowed: a new or regular file in an existing directory that can be written to");
 }
 
-/// Creates an empty file of a new name beside `path`. The name shows where the file came from, in case it
-/// survives a kill: .<name>.<process>.<number>.tmp
-fs::path create_temporary(const fs::path& path) {
+void require_regular(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (!path.has_filename()) fail_input(path, "no file name");
   if (fs::is_directory(status)) fail_input(path, "a directory");
   if (fs::exists(status) && !fs::is_regular_file(status)) fail_input(path, "a device, pipe or socket");
+}
+
+constexpr std::string_view kEnding = ".tmp";
+constexpr const char* kConvertersEnding = ".hier";  // what vcd2fst puts beside its output
+
+/// ".image.exr.csx600."
+std::string beginning_of(const fs::path& target) {
+  return "." + target.filename().string() + ".csx600.";
+}
+
+/// Whether a file of that name is a temporary one of the target: the beginning, "PROCESS.NUMBER", the ending.
+bool is_temporary_of(const std::string& beginning, const std::string& name) {
+  if (name.size() < beginning.size() + kEnding.size()) return false;
+  const std::size_t end = name.size() - kEnding.size();
+  if (name.compare(0, beginning.size(), beginning) != 0 || name.compare(end, std::string::npos, kEnding) != 0)
+    return false;
+  const std::string numbers = name.substr(beginning.size(), end - beginning.size());
+  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  const std::size_t dot = numbers.find('.');
+  return dot != std::string::npos && dot > 0 && dot + 1 < numbers.size() &&
+         std::count_if(numbers.begin(), numbers.end(), is_digit) == std::ptrdiff_t(numbers.size()) - 1;
+}
+
+/// Removes a temporary file unless a process that runs, here or on another machine, holds its lock.
+void remove_unless_locked(const fs::path& temporary) {
+  const int descriptor = open(temporary.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return;
+  struct stat status {};
+  const bool is_file = fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+  std::error_code ignored;
+  if (is_file && flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+    fs::remove(temporary.string() + kConvertersEnding, ignored);
+    fs::remove(temporary, ignored);
+  }
+  close(descriptor);
+}
+
+void remove_left_behind(const fs::path& target) {
+  std::error_code error;
+  const std::string beginning = beginning_of(target);
+  const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_temporary_of(beginning, entry->path().filename().string())) remove_unless_locked(entry->path());
+  }
+}
+
+/// Whether the locked file still has its name; another process may have taken it for a left one in between.
+bool is_still_there(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+}
+
+/// Creates an empty file of a new name beside `path`.
+/// @param[out] lock the descriptor that holds the file's lock
+fs::path create_temporary(const fs::path& path, int& lock) {
+  require_regular(path);
+  remove_left_behind(path);
   for (int number = 0;; ++number) {
-    fs::path temporary =
-        path.parent_path() / ("." + path.filename().string() + "." + std::to_string(getpid()) + "." +
-                              std::to_string(number) + ".tmp");
+    fs::path temporary = path.parent_path() / (beginning_of(path) + std::to_string(getpid()) + "." +
+                                               std::to_string(number) + std::string(kEnding));
     const int descriptor = open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    if (descriptor >= 0) {
-      close(descriptor);
+    if (descriptor < 0 && errno == EEXIST) continue;
+    if (descriptor < 0) fail_input(path, "that it cannot be created (" + system_message(errno) + ")");
+    flock(descriptor, LOCK_EX);  // a file system without locks has no process that looks for them either
+    if (is_still_there(descriptor)) {
+      lock = descriptor;
       return temporary;
     }
-    if (errno != EEXIST) fail_input(path, "that it cannot be created (" + system_message(errno) + ")");
+    close(descriptor);
   }
 }
 
@@ -50,11 +113,17 @@ void write_bytes(const fs::path& temporary, std::string_view bytes, const fs::pa
 
 }  // namespace
 
-TemporaryFile::TemporaryFile(const fs::path& target) : path_(create_temporary(target)) {}
+TemporaryFile::TemporaryFile(const fs::path& target) : path_(create_temporary(target, lock_)) {}
 
 TemporaryFile::~TemporaryFile() {
   std::error_code ignored;
   if (!path_.empty()) fs::remove(path_, ignored);
+  release();
+}
+
+void TemporaryFile::release() {
+  if (lock_ >= 0) close(lock_);
+  lock_ = -1;
 }
 
 void TemporaryFile::rename_to(const fs::path& target) {
@@ -62,6 +131,7 @@ void TemporaryFile::rename_to(const fs::path& target) {
   fs::rename(path_, target, error);
   if (error) throw RunError(target.string() + ": cannot be replaced: " + error.message());
   path_.clear();
+  release();
 }
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
@@ -80,6 +150,12 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
 
 void write_bytes_atomically(const fs::path& path, std::string_view bytes) {
   write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, bytes, path); });
+}
+
+void write_together(const std::vector<std::pair<fs::path, std::string>>& files) {
+  std::deque<TemporaryFile> temporaries;
+  for (const auto& [path, bytes] : files) write_bytes(temporaries.emplace_back(path).path(), bytes, path);
+  for (std::size_t i = 0; i < files.size(); ++i) temporaries[i].rename_to(files[i].first);
 }
 
 void require_writable(const fs::path& path) {

@@ -42,7 +42,7 @@ std::string read_all(int pipe) {
     text = job();
   } catch (const InputError& error) {
     status = input_error;
-    text = error.what();
+    text = error.details().empty() ? error.what() : error.what() + ("\n" + error.details());
   } catch (const std::exception& error) {
     status = run_error;
     text = error.what();
@@ -119,7 +119,11 @@ std::vector<std::string> run_in_processes(const std::vector<std::function<std::s
     results[info.job] = std::move(text);
     if (done) done(++finished);
   }
-  if (failure == input_error) throw InputError(failure_text);
+  if (failure == input_error) {
+    const std::size_t end = failure_text.find('\n');
+    throw InputError(failure_text.substr(0, end),
+                     end == std::string::npos ? "" : failure_text.substr(end + 1));
+  }
   if (failure != succeeded) throw RunError(failure_text);
   return results;
 }

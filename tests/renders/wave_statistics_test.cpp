@@ -196,6 +196,30 @@ TEST_P(WaveStatistics, TransactionLogHoldsEveryRequestAndItsWaits) {
   EXPECT_EQ(*ids.rbegin() + 1, ids.size()) << "no request is left out";
 }
 
+/// Viewers take whole nanoseconds. With cycles of 4 ns every event begins and ends at one.
+TEST_P(WaveStatistics, TimelineInWholeNanosecondsHasNoOverlaps) {
+  options_.chip.chip.clock_hz = 250e6;
+  run();
+  std::map<int, std::int64_t> ends;
+  std::size_t events = 0;
+  const auto nanoseconds = [](const Json& time) {
+    return static_cast<std::int64_t>(time.get<double>() * 1000.0);
+  };
+  const Json timeline = Json::parse(std::ifstream(path("run.json")));
+  for (const Json& event : timeline.at("traceEvents")) {
+    if (event.at("ph") != "X") continue;
+    const std::int64_t start = nanoseconds(event.at("ts"));
+    const std::int64_t duration = nanoseconds(event.at("dur"));
+    EXPECT_EQ(start, 4 * event.at("args").at("start_cycle").get<std::int64_t>());
+    EXPECT_EQ(duration, 4 * event.at("args").at("cycles").get<std::int64_t>());
+    std::int64_t& end = ends[event.at("tid").get<int>()];
+    EXPECT_GE(start, end);
+    end = start + duration;
+    ++events;
+  }
+  EXPECT_GT(events, 100u);
+}
+
 TEST_P(WaveStatistics, TimelineIsWhatItsFormatAsksForAndAddsUp) {
   const testbench::ChipStatistics chip = run();
   const Json timeline = Json::parse(std::ifstream(path("run.json")));

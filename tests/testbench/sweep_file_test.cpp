@@ -141,6 +141,9 @@ TEST_F(SweepFileTest, BadInputIsNamedWithItsLine) {
   expect_error("[[axis]]\nfirmware.n = [1]\n[[axis]]\nfirmware.n = [2]\n", {"firmware.n", "twice"});
   expect_error("firmware.n = 1\n[[axis]]\nfirmware.n = [2]\n", {"firmware.n", "twice"});
   expect_error("[[axis]]\nddr.banks = { from = 1, to = 4 }\n", {"ddr.banks", "step, factor, count"});
+  for (const char* how : {"count = 5", "step = 1", "factor = 2"})
+    expect_error("[[axis]]\nddr.banks = { from = 4, to = 4, " + std::string(how) + " }\n",
+                 {"ddr.banks", "from 4 to itself", "a list of one value"});
   expect_error("[[axis]]\nddr.banks = { from = 1, to = 4, step = 0 }\n", {"ddr.banks", "step of 0"});
   expect_error("[[axis]]\nddr.banks = { from = 1, to = 4, step = -1 }\n", {"ddr.banks", "step of -1"});
   expect_error("[[axis]]\nddr.banks = { from = 1, to = 4, factor = 1 }\n", {"ddr.banks", "factor of 1"});

@@ -1,0 +1,112 @@
+#include "testbench/film/black_film.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "testbench/mono_image/faces.hpp"
+#include "testbench/mono_image/mono_image.hpp"
+
+namespace testbench {
+namespace {
+
+/// Rays through the centres of a grid of this side, spread over the film.
+constexpr int kGridSide = 8;
+
+struct ViewedPoint {
+  const Triangle* triangle;
+  glm::dvec3 point;
+  bool from_behind;
+};
+
+const Material& material_in(const Scene& scene, const Triangle& triangle) {
+  return scene.materials[std::size_t(triangle.material)];
+}
+
+bool is_light(const Scene& scene, const Triangle& triangle) {
+  return material_in(scene, triangle).emission != glm::dvec3(0.0);
+}
+
+/// Distance along the ray, or infinity (Moeller and Trumbore 1997).
+double distance_to(const Triangle& triangle, const glm::dvec3& origin, const glm::dvec3& direction) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const glm::dvec3 edge1 = triangle.vertex[1] - triangle.vertex[0];
+  const glm::dvec3 edge2 = triangle.vertex[2] - triangle.vertex[0];
+  const glm::dvec3 p = glm::cross(direction, edge2);
+  const double determinant = glm::dot(edge1, p);
+  if (determinant == 0) return kNone;
+  const glm::dvec3 from = origin - triangle.vertex[0];
+  const double u = glm::dot(from, p) / determinant;
+  const glm::dvec3 q = glm::cross(from, edge1);
+  const double v = glm::dot(direction, q) / determinant;
+  const double distance = glm::dot(edge2, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && distance > 0 ? distance : kNone;
+}
+
+/// What the rays of the grid meet; rays that leave the scene are left out.
+std::vector<ViewedPoint> viewed_points(const Scene& scene) {
+  const Camera& camera = scene.camera;
+  const double half_height = std::tan(0.5 * camera.vertical_field_of_view_radians);
+  const double half_width = half_height * scene.film.width / scene.film.height;
+  std::vector<ViewedPoint> points;
+  for (int cell = 0; cell < kGridSide * kGridSide; ++cell) {
+    const auto place = [](int i) { return (2 * i + 1) / double(kGridSide) - 1; };
+    const glm::dvec3 direction =
+        camera.direction + half_width * place(cell % kGridSide) * glm::cross(camera.direction, camera.up) -
+        half_height * place(cell / kGridSide) * camera.up;
+    double nearest = std::numeric_limits<double>::infinity();
+    const Triangle* hit = nullptr;
+    for (const Triangle& triangle : scene.triangles)
+      if (const double distance = distance_to(triangle, camera.position, direction); distance < nearest) {
+        nearest = distance;
+        hit = &triangle;
+      }
+    if (hit != nullptr)
+      points.push_back(
+          {hit, camera.position + nearest * direction, glm::dot(area_normal(*hit), direction) > 0});
+  }
+  return points;
+}
+
+bool faces(const Triangle& light, const glm::dvec3& point) {
+  return glm::dot(area_normal(light), point - light.vertex[0]) > 0;
+}
+
+/// Whether the front of any light looks at the camera or at a point that the camera sees.
+bool any_light_faces(const Scene& scene, const std::vector<ViewedPoint>& points) {
+  return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& light) {
+    const auto is_faced = [&](const ViewedPoint& viewed) { return faces(light, viewed.point); };
+    return is_light(scene, light) &&
+           (faces(light, scene.camera.position) || std::any_of(points.begin(), points.end(), is_faced));
+  });
+}
+
+}  // namespace
+
+bool is_black(const Film& film) {
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel)
+    if (film.mean(pixel) != glm::dvec3(0.0)) return false;
+  return true;
+}
+
+std::string why_black(const Scene& scene) {
+  const std::vector<ViewedPoint> points = viewed_points(scene);
+  if (points.empty()) return "the camera sees no surface; it may look away from the scene";
+  if (!any_light_faces(scene, points))
+    return "every light faces away from what the camera sees; a light emits from the side from which its "
+           "vertices run counter-clockwise";
+  const auto is_from_behind = [](const ViewedPoint& viewed) { return viewed.from_behind; };
+  const bool is_surrounded = points.size() == std::size_t(kGridSide) * kGridSide;
+  if (is_surrounded && std::all_of(points.begin(), points.end(), is_from_behind))
+    return "the camera sees back sides alone; it may be inside an object";
+  const auto is_dark = [&](const ViewedPoint& viewed) {
+    return material_in(scene, *viewed.triangle).reflectance == glm::dvec3(0.0);
+  };
+  if (std::all_of(points.begin(), points.end(), is_dark))
+    return "the surfaces that the camera sees reflect no light";
+  return "no path has met a light; lights may be hidden from what the camera sees, or more samples may find "
+         "them";
+}
+
+}  // namespace testbench

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "testbench/film/film.hpp"
+#include "testbench/scene/scene.hpp"
+
+namespace testbench {
+
+/// Whether every pixel is zero. Ends at the first that is not.
+bool is_black(const Film& film);
+
+/// Why a film of the scene may be all black, as a clause: what a few rays through the film meet, and whether
+/// any light faces what they meet. An estimate by brute force, for films that are black only.
+std::string why_black(const Scene& scene);
+
+}  // namespace testbench

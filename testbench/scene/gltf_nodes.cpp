@@ -6,8 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "testbench/scene/gltf_accessor.hpp"
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_accessor.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 #include "testbench/scene/mesh.hpp"
 
 namespace testbench {

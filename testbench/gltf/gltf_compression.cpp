@@ -1,6 +1,6 @@
-#include "testbench/scene/gltf_compression.hpp"
+#include "testbench/gltf/gltf_compression.hpp"
 
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 
 #ifdef CSX600_HAS_MESHOPTIMIZER
 #include <meshoptimizer.h>

@@ -1,4 +1,4 @@
-#include "testbench/scene/gltf_document.hpp"
+#include "testbench/gltf/gltf_document.hpp"
 
 #include <openssl/evp.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <set>
 
-#include "testbench/scene/gltf_compression.hpp"
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_compression.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/input_file.hpp"
 #include "testbench/system/json_nesting.hpp"

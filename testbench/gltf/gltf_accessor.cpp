@@ -1,9 +1,9 @@
-#include "testbench/scene/gltf_accessor.hpp"
+#include "testbench/gltf/gltf_accessor.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 
 namespace testbench {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "testbench/scene/gltf_document.hpp"
+#include "testbench/gltf/gltf_document.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {

@@ -5,7 +5,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
 
-#include "testbench/scene/gltf_accessor.hpp"
+#include "testbench/gltf/gltf_accessor.hpp"
 #include "testbench/scene/gltf_material.hpp"
 #include "testbench/scene/gltf_nodes.hpp"
 #include "testbench/scene/gltf_primitive.hpp"

@@ -6,8 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "testbench/scene/gltf_accessor.hpp"
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_accessor.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 #include "testbench/scene/mesh.hpp"
 
 namespace testbench {
@@ -31,11 +31,11 @@ void require_transform(const GltfDocument& document, const nlohmann::json& node,
     for (const char* other : {"translation", "rotation", "scale"})
       if (node.contains(other)) document.fail(pointer, std::string("matrix and ") + other, "one of them");
     if ((*matrix)[3] != 0.0 || (*matrix)[7] != 0.0 || (*matrix)[11] != 0.0 || (*matrix)[15] != 1.0)
-      document.fail(pointer + "/matrix", shortened(*matrix), "0, 0, 0, 1 as its last row");
+      document.fail(pointer + "/matrix", json_in_message(*matrix), "0, 0, 0, 1 as its last row");
   }
   if (const nlohmann::json* const rotation = find_gltf(node, "rotation"))
     if (std::all_of(rotation->begin(), rotation->end(), [](const auto& part) { return part == 0.0; }))
-      document.fail(pointer + "/rotation", shortened(*rotation), "a quaternion of length 1");
+      document.fail(pointer + "/rotation", json_in_message(*rotation), "a quaternion of length 1");
 }
 
 glm::dmat4 transform_of(const nlohmann::json& node) {
@@ -183,7 +183,7 @@ std::optional<GltfCamera> read_gltf_camera(GltfDocument& document, std::size_t n
   const nlohmann::json& lens = source["perspective"];
   const double angle = lens["yfov"].get<double>();
   if (!(angle < glm::pi<double>()))
-    document.fail(pointer + "/perspective/yfov", shortened(lens["yfov"]), "0 to pi, both excluded");
+    document.fail(pointer + "/perspective/yfov", json_in_message(lens["yfov"]), "0 to pi, both excluded");
   const glm::dmat3 axes(transform);
   const std::string where = document.named("nodes", "node", node);
   if (!is_finite(transform) || !(std::abs(glm::determinant(axes)) > 0.0))

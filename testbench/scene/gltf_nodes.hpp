@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "testbench/scene/gltf_document.hpp"
+#include "testbench/gltf/gltf_document.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 
 namespace testbench {

@@ -2,8 +2,8 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "testbench/scene/gltf_accessor.hpp"
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_accessor.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 
 namespace testbench {
 namespace {

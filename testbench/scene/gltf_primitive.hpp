@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "testbench/scene/gltf_document.hpp"
+#include "testbench/gltf/gltf_document.hpp"
 
 namespace testbench {
 

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "testbench/scene/file_reach.hpp"
-#include "testbench/scene/notes.hpp"
+#include "testbench/system/file_reach.hpp"
+#include "testbench/system/notes.hpp"
 #include "testbench/scene/polygon.hpp"
 #include "testbench/scene/scene.hpp"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "testbench/scene/notes.hpp"
+#include "testbench/system/notes.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/scene/notes.hpp"
+#include "testbench/system/notes.hpp"
 
 namespace testbench {
 

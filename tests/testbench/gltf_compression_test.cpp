@@ -1,6 +1,6 @@
 // Compressed data is made with the libraries that the loader uses; without them files are refused by name.
 
-#include "testbench/scene/gltf_compression.hpp"
+#include "testbench/gltf/gltf_compression.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/scene/gltf_document.hpp"
+#include "testbench/gltf/gltf_document.hpp"
 
 namespace testbench {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "testbench/scene/file_reach.hpp"
-#include "testbench/scene/notes.hpp"
+#include "testbench/system/file_reach.hpp"
+#include "testbench/system/notes.hpp"
 
 namespace testbench {
 

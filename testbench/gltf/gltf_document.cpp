@@ -1,4 +1,4 @@
-#include "testbench/scene/gltf_document.hpp"
+#include "testbench/gltf/gltf_document.hpp"
 
 #include <openssl/evp.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <set>
 
-#include "testbench/scene/gltf_compression.hpp"
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_compression.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/input_file.hpp"
 #include "testbench/system/json_nesting.hpp"
@@ -37,7 +37,7 @@ nlohmann::json parse_gltf_json(const std::string& text, const std::string& file)
     fail_in_gltf(file, "", "'" + first_line(thrown.what()) + "'", "a valid glTF 2.0 file");
   }
   if (!repeated.empty()) fail_in_gltf(file, "", "the name '" + repeated + "' twice in an object", "it once");
-  if (!root.is_object()) fail_in_gltf(file, "", shortened(root), "a JSON object");
+  if (!root.is_object()) fail_in_gltf(file, "", json_in_message(root), "a JSON object");
   return root;
 }
 
@@ -143,13 +143,13 @@ std::string GltfDocument::json_text(std::string bytes) {
 void GltfDocument::require_version() const {
   const nlohmann::json* const asset = find_gltf(root_, "asset");
   if (asset == nullptr || !asset->is_object())
-    fail("/asset", asset == nullptr ? "none" : shortened(*asset), "an object");
+    fail("/asset", asset == nullptr ? "none" : json_in_message(*asset), "an object");
   check_gltf(file_, root_, *asset, "asset", "/asset");
   const nlohmann::json& version = asset->at("version");
-  if (version_of(version.get<std::string>()).first != 2) fail("/asset/version", shortened(version), "2.0");
+  if (version_of(version.get<std::string>()).first != 2) fail("/asset/version", json_in_message(version), "2.0");
   if (const nlohmann::json* least = find_gltf(*asset, "minVersion"))
     if (version_of(least->get<std::string>()) != std::pair(2, 0))
-      fail("/asset/minVersion", shortened(*least), "2.0");
+      fail("/asset/minVersion", json_in_message(*least), "2.0");
 }
 
 void GltfDocument::require_supported() const {
@@ -201,7 +201,7 @@ GltfBytes GltfDocument::view(std::size_t index) {
                              packed->at("byteLength").get<std::size_t>(), place),
                        *packed, place);
     if (entry->second.size() < view.at("byteLength").get<std::size_t>())
-      fail(pointer + "/byteLength", shortened(view["byteLength"]),
+      fail(pointer + "/byteLength", json_in_message(view["byteLength"]),
            std::to_string(entry->second.size()) + ", what the compressed data holds");
   }
   return {entry->second.data(), entry->second.size()};
@@ -236,7 +236,7 @@ std::string GltfDocument::buffer_bytes(const nlohmann::json& source, std::size_t
   }
   const std::size_t start = text.find(";base64,");
   const std::string bytes = start == std::string::npos ? "" : decode_base64(text.substr(start + 8));
-  if (bytes.empty()) fail(pointer + "/uri", shortened(*uri), "a file, or data:...;base64,...");
+  if (bytes.empty()) fail(pointer + "/uri", json_in_message(*uri), "a file, or data:...;base64,...");
   return bytes;
 }
 
@@ -244,14 +244,14 @@ std::string GltfDocument::file_of_uri(const std::string& uri, const std::string&
   const std::optional<std::string> name = decode_percent(uri);
   const bool has_scheme = uri.find(':') != std::string::npos && uri.find(':') < uri.find('/');
   if (!name || name->empty() || has_scheme || name->find('\0') != std::string::npos)
-    fail(pointer, shortened(uri), "a file relative to this one, or data:...;base64,...");
+    fail(pointer, json_in_message(uri), "a file relative to this one, or data:...;base64,...");
   return *name;
 }
 
 std::string GltfDocument::named(const char* array_name, const char* kind, std::size_t index) const {
   const nlohmann::json* const name = find_gltf(element(array_name, index), "name");
   return std::string(kind) + " " + std::to_string(index) +
-         (name == nullptr ? "" : " '" + printable(name->get<std::string>()) + "'");
+         (name == nullptr ? "" : " '" + text_in_message(name->get<std::string>()) + "'");
 }
 
 void GltfDocument::check(const nlohmann::json& value, const char* object, const std::string& pointer) const {

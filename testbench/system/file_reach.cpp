@@ -1,4 +1,4 @@
-#include "testbench/scene/file_reach.hpp"
+#include "testbench/system/file_reach.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 
 namespace testbench {
 namespace gltf_rule_words {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "testbench/scene/gltf_compression.hpp"
-#include "testbench/scene/gltf_document.hpp"
+#include "testbench/gltf/gltf_compression.hpp"
+#include "testbench/gltf/gltf_document.hpp"
 
 namespace testbench {
 

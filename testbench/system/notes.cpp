@@ -1,4 +1,4 @@
-#include "testbench/scene/notes.hpp"
+#include "testbench/system/notes.hpp"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
-#include "testbench/scene/gltf_accessor.hpp"
+#include "testbench/gltf/gltf_accessor.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 
 namespace testbench {
 namespace {
@@ -162,7 +162,7 @@ void require_gltf_form(const GltfDocument& document, const nlohmann::json& acces
       std::any_of(form.types.begin(), form.types.end(), [&](const char* one) { return type == one; });
   if (!has_component || !has_type)
     document.fail(where,
-                  "an accessor of " + type + " of component type " + shortened(accessor["componentType"]) +
+                  "an accessor of " + type + " of component type " + json_in_message(accessor["componentType"]) +
                       (is_normalized ? " normalized" : ""),
                   allowed_by(form));
 }
@@ -191,7 +191,7 @@ std::vector<std::uint32_t> read_gltf_indices(GltfDocument& document, std::size_t
   if (const nlohmann::json* const view = find_gltf(document.element("accessors", accessor), "bufferView"))
     if (const nlohmann::json* const stride =
             find_gltf(document.element("bufferViews", view->get<std::size_t>()), "byteStride"))
-      document.fail(where, "a byteStride of " + shortened(*stride),
+      document.fail(where, "a byteStride of " + json_in_message(*stride),
                     "none, that is for attributes of vertices");
   const GltfNumbers numbers = read_gltf_accessor(
       document, accessor, {{"SCALAR"}, {}, {GltfComponent::u8, GltfComponent::u16, GltfComponent::u32}},

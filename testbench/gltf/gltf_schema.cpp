@@ -1,4 +1,4 @@
-#include "testbench/scene/gltf_schema.hpp"
+#include "testbench/gltf/gltf_schema.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,13 +132,13 @@ class GltfChecker {
     const std::size_t size = array == root_.end() || !array->is_array() ? 0 : array->size();
     if (is_integer(value) && value.get<double>() >= 0.0 && value.get<double>() < double(size)) return;
     const std::string name = singular(type.of);
-    fail_in_gltf(file_, pointer, name + " " + shortened(value),
+    fail_in_gltf(file_, pointer, name + " " + json_in_message(value),
                  size == 0 ? "none, the file holds no " + name : "0 to " + std::to_string(size - 1));
   }
 
   [[noreturn]] void fail(const nlohmann::json& value, const GltfType& type,
                          const std::string& pointer) const {
-    fail_in_gltf(file_, pointer, shortened(value), allowed_by(type));
+    fail_in_gltf(file_, pointer, json_in_message(value), allowed_by(type));
   }
 
   const std::string& file_;
@@ -152,7 +152,7 @@ void check_gltf(const std::string& file, const nlohmann::json& root, const nlohm
   GltfChecker(file, root).check_object(value, object, pointer);
 }
 
-std::string shortened(const nlohmann::json& value) {
+std::string json_in_message(const nlohmann::json& value) {
   constexpr std::size_t kLongest = 60;
   if (value.is_structured() && value.size() > kLongest)
     return value.is_array() ? "an array of " + std::to_string(value.size()) : "an object";
@@ -161,7 +161,7 @@ std::string shortened(const nlohmann::json& value) {
 }
 
 /// Names come from the file: whatever is in them, the message stays one line of moderate length.
-std::string printable(const std::string& text) {
+std::string text_in_message(const std::string& text) {
   constexpr std::size_t kLongest = 200;
   std::string line = text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
   for (char& c : line)
@@ -171,8 +171,8 @@ std::string printable(const std::string& text) {
 
 void fail_in_gltf(const std::string& file, const std::string& where, const std::string& found,
                   const std::string& allowed) {
-  throw InputError(file + ": " + (where.empty() ? "" : printable(where) + ": ") + "found " +
-                   printable(found) + "; allowed: " + allowed);
+  throw InputError(file + ": " + (where.empty() ? "" : text_in_message(where) + ": ") + "found " +
+                   text_in_message(found) + "; allowed: " + allowed);
 }
 
 }  // namespace testbench

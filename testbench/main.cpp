@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <systemc>
 
 #include "testbench/commands/commands.hpp"
@@ -44,6 +45,9 @@ int run(int argc, char** argv) {
   } catch (const testbench::InputError& error) {
     std::fprintf(stderr, "csx600: %s\n", error.what());
     return testbench::kWrongInput.code;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "csx600: %s\n", testbench::kOutOfMemory);
+    return testbench::kRunFailed.code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "csx600: %s\n", error.what());
     return testbench::kRunFailed.code;

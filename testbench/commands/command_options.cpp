@@ -11,6 +11,7 @@
 #include "model/config/chip_presets.hpp"
 #include "testbench/commands/named_values.hpp"
 #include "testbench/film/film_size.hpp"
+#include "testbench/run/run_settings.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
@@ -42,7 +43,7 @@ void ChipOptions::add_to(CLI::App& command, const std::string& default_chip) {
 
 model::ChipConfig SetOptions::chip(const std::string& name) const {
   try {
-    model::ChipConfig config = model::load_chip(name);
+    model::ChipConfig config = load_chip(name);
     for (const std::string& setting : settings_) {
       const std::size_t equals = setting.find('=');
       if (equals == std::string::npos)

@@ -50,7 +50,8 @@ class NestingDepth {
   std::vector<std::size_t> levels_;  ///< of each bracket that is open; at most kMostNesting
 };
 
-/// The place of the quote that ends the string that begins at `begin`; the end of the line or text if none does.
+/// The place of the quote that ends the string that begins at `begin`; the end of the line or text if none
+/// does.
 std::size_t end_of_string(std::string_view text, std::size_t begin, bool has_escapes, char line_end) {
   const char quote = text[begin];
   for (std::size_t i = begin + 1; i < text.size(); ++i) {

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "testbench/system/csv.hpp"
 #include "testbench/validation/validation.hpp"
 
 namespace testbench {
@@ -66,13 +67,6 @@ std::string transfers_text(const std::vector<TransferPoint>& transfers) {
         formatted("  %4d %10d  %-18d %8.3f %8.3f\n", point.pes, point.bytes_per_pe, point.packet_offset_bytes,
                   point.load_bytes_per_second * 1e-9, point.save_bytes_per_second * 1e-9);
   return text;
-}
-
-/// A text in CSV's quotes, since it may contain commas.
-std::string csv_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
 }
 
 }  // namespace

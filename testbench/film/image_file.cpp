@@ -36,10 +36,12 @@ struct ExrPixel {
   std::uint32_t samples;
 };
 
-std::vector<ExrPixel> exr_pixels(const Film& film) {
+/// The pixels of a row.
+std::vector<ExrPixel> exr_pixels(const Film& film, int row) {
+  const int width = film.size().width;
   std::vector<ExrPixel> pixels;
-  pixels.reserve(static_cast<std::size_t>(film.pixel_count()));
-  for (int index = 0; index < film.pixel_count(); ++index) {
+  pixels.reserve(static_cast<std::size_t>(width));
+  for (int index = row * width; index < (row + 1) * width; ++index) {
     const glm::dvec3 mean = film.mean(index);
     const glm::dvec3 variance = film.variance_of_mean(index);
     ExrPixel& pixel = pixels.emplace_back();
@@ -69,32 +71,31 @@ Imf::Header exr_header(const Film& film, const std::map<std::string, std::string
   return header;
 }
 
-/// A slice that OpenEXR addresses by the pixel (0, 0) and byte strides.
-template <class Element>
-Imf::Slice slice(Imf::PixelType type, Element* first, std::size_t pixel_bytes, int width) {
-  return Imf::Slice(type, reinterpret_cast<char*>(first), pixel_bytes,
-                    pixel_bytes * static_cast<std::size_t>(width));
+/// Where OpenEXR finds the channels of one row: every row lies at the same place, so its byte stride is 0.
+Imf::FrameBuffer one_row(ExrPixel* first) {
+  const auto slice = [](Imf::PixelType type, auto* element) {
+    return Imf::Slice(type, reinterpret_cast<char*>(element), sizeof(ExrPixel), 0);
+  };
+  Imf::FrameBuffer buffer;
+  for (int channel = 0; channel < 3; ++channel) {
+    buffer.insert(kMeanChannels[channel], slice(Imf::FLOAT, &first->mean[channel]));
+    buffer.insert(kVarianceChannels[channel], slice(Imf::FLOAT, &first->variance[channel]));
+  }
+  buffer.insert(kSamplesChannel, slice(Imf::UINT, &first->samples));
+  return buffer;
 }
 
 std::string encode_exr(const Film& film, const Imf::Header& header) {
-  std::vector<ExrPixel> pixels = exr_pixels(film);
-  const int width = film.size().width;
-  Imf::FrameBuffer buffer;
-  for (int channel = 0; channel < 3; ++channel) {
-    buffer.insert(kMeanChannels[channel],
-                  slice(Imf::FLOAT, &pixels[0].mean[channel], sizeof(ExrPixel), width));
-    buffer.insert(kVarianceChannels[channel],
-                  slice(Imf::FLOAT, &pixels[0].variance[channel], sizeof(ExrPixel), width));
-  }
-  buffer.insert(kSamplesChannel, slice(Imf::UINT, &pixels[0].samples, sizeof(ExrPixel), width));
-
   Imf::StdOSStream stream;
   {
     // OutputFile's destructor writes the line table and hides errors, so it writes to memory; the whole file
     // is written afterwards, with checks.
     Imf::OutputFile file(stream, header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(film.size().height);
+    for (int row = 0; row < film.size().height; ++row) {
+      std::vector<ExrPixel> pixels = exr_pixels(film, row);
+      file.setFrameBuffer(one_row(pixels.data()));
+      file.writePixels(1);
+    }
   }
   return stream.str();
 }
@@ -115,7 +116,12 @@ int srgb_code(double linear) {
 
 void write_png(const std::filesystem::path& path, const Film& film) {
   std::vector<unsigned char> codes;
-  for (const double value : film.rgb()) codes.push_back(static_cast<unsigned char>(srgb_code(value)));
+  codes.reserve(3 * static_cast<std::size_t>(film.pixel_count()));
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    const glm::dvec3 mean = film.mean(pixel);
+    for (int channel = 0; channel < 3; ++channel)
+      codes.push_back(static_cast<unsigned char>(srgb_code(mean[channel])));
+  }
 
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -207,17 +207,19 @@ class SchemaCheck {
 
 }  // namespace
 
-Json parse_json_object(const std::string& text, const std::string& origin, const std::string& allowed) {
+Json parse_json_object(const std::string& text, const std::string& origin, const std::string& allowed,
+                       std::size_t first_line) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw InputError(origin + ": found an empty file; allowed: " + allowed);
-  require_shallow_json(text, origin);
+  require_shallow_json(text, origin, first_line);
   try {
     Json json = Json::parse(text);
     if (json.is_object()) return json;
     throw InputError(origin + ": found no JSON object; allowed: " + allowed);
   } catch (const Json::parse_error& error) {
     const std::size_t end = std::min(text.size(), std::size_t(error.byte));
-    const auto line = 1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(end), '\n');
+    const auto line =
+        std::ptrdiff_t(first_line) + std::count(text.begin(), text.begin() + std::ptrdiff_t(end), '\n');
     throw InputError(origin + ":" + std::to_string(line) +
                      ": found no JSON object that is whole; allowed: " + allowed);
   } catch (const Json::exception&) {

@@ -20,13 +20,13 @@ using Schema = std::vector<SchemaRow>;
 /// The object that a text holds. Throws InputError, one line that names `origin` and the line, when the text
 /// is empty, nests too deep (nesting.hpp) or is no JSON object.
 /// @param allowed "a statistics file"
+/// @param first_line the number of the text's first line in its file
 nlohmann::ordered_json parse_json_object(const std::string& text, const std::string& origin,
-                                         const std::string& allowed);
+                                         const std::string& allowed, std::size_t first_line = 1);
 
 /// Throws InputError with line, key, what was found and what is allowed, for the first row that `json`
 /// breaks.
 /// @param text what `json` was parsed from, in which the line is looked up
-/// @param first_line the number of the text's first line in its file
 void require_schema(const nlohmann::ordered_json& json, const Schema& schema, const std::string& text,
                     const std::string& origin, std::size_t first_line = 1);
 

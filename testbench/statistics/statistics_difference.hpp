@@ -40,7 +40,9 @@ std::string scene_name_of(const std::string& path);
 
 struct ComparisonRules {
   std::vector<Tolerance> tolerances;  ///< the last that matches a key counts; without one it must be equal
-  std::vector<AbsoluteTolerance> absolute = {};  ///< likewise; a number is equal that either list lets pass
+  std::vector<std::string> ignore;    ///< globs
+  std::vector<AbsoluteTolerance> absolute = {};  ///< as tolerances; a number is equal that either lets pass
+};  ///< likewise; a number is equal that either list lets pass
   std::vector<std::string> ignore;               ///< globs
 };
 

@@ -113,7 +113,7 @@ void PointStore::read() {
 
 void PointStore::take_line(const std::string& line, std::size_t number, const std::string& build) {
   const std::string place = path_.string() + ":" + std::to_string(number) + ": ";
-  Json json = parse_json_object(line, path_.string() + ":" + std::to_string(number), kAllowed);
+  Json json = parse_json_object(line, path_.string(), kAllowed, number);
   if (number == 1) {
     require_schema(json, head_schema(), line, path_);
     const std::string format = json["format"];

@@ -11,7 +11,8 @@ namespace {
 /// The levels that are open at a place of a text.
 class NestingDepth {
  public:
-  explicit NestingDepth(const std::string& origin) : origin_(origin) {}
+  explicit NestingDepth(const std::string& origin, std::size_t first_line = 1)
+      : origin_(origin), line_(first_line) {}
 
   void next_line() {
     ++line_;
@@ -44,7 +45,7 @@ class NestingDepth {
   }
 
   const std::string& origin_;
-  std::size_t line_ = 1;
+  std::size_t line_;
   std::size_t dots_ = 0;  ///< of the key that is being read
   std::size_t depth_ = 0;
   std::vector<std::size_t> levels_;  ///< of each bracket that is open; at most kMostNesting
@@ -85,8 +86,8 @@ std::size_t end_of_toml_string(std::string_view text, std::size_t begin, Nesting
 
 }  // namespace
 
-void require_shallow_json(std::string_view text, const std::string& origin) {
-  NestingDepth depth(origin);
+void require_shallow_json(std::string_view text, const std::string& origin, std::size_t first_line) {
+  NestingDepth depth(origin, first_line);
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '"') i = end_of_string(text, i, true, '\n');

@@ -42,8 +42,6 @@ struct ComparisonRules {
   std::vector<Tolerance> tolerances;  ///< the last that matches a key counts; without one it must be equal
   std::vector<std::string> ignore;    ///< globs
   std::vector<AbsoluteTolerance> absolute = {};  ///< as tolerances; a number is equal that either lets pass
-};  ///< likewise; a number is equal that either list lets pass
-  std::vector<std::string> ignore;               ///< globs
 };
 
 struct Comparison {

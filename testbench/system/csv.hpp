@@ -8,5 +8,7 @@ namespace testbench {
 /// Spreadsheets run fields that begin with = + - @, a tabulator or CR as formulas: such a text gets an
 /// apostrophe before it, which they take as "this is text". Numbers are no texts and are written as they are.
 std::string csv_text(const std::string& text);
+/// The same in quotes, whatever it holds.
+std::string csv_quoted(const std::string& text);
 
 }  // namespace testbench

@@ -83,10 +83,10 @@ std::string validation_csv(const Validation& validation) {
   std::string text =
       "what,unit,chip,model,published_low,published_high,published_kind,error_percent,source\n";
   for (const Figure& figure : validation.figures)
-    text += csv_text(figure.what) + ',' + csv_text(figure.unit) + ',' + figure.chip + ',' +
+    text += csv_quoted(figure.what) + ',' + csv_quoted(figure.unit) + ',' + figure.chip + ',' +
             formatted("%.9g,%.9g,%.9g,", figure.model, figure.published_low, figure.published_high) +
             kind_name(figure.kind) + ',' + formatted("%.3f,", figure.error_percent()) +
-            csv_text(figure.source) + '\n';
+            csv_quoted(figure.source) + '\n';
   return text;
 }
 

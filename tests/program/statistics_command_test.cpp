@@ -250,7 +250,8 @@ TEST_F(StatisticsCommands, GoldenUpdatesWithOneCommandAndShowsWhatMoved) {
   EXPECT_EQ(run({"golden", "kept", "--update"}).exit_code, 0);
   EXPECT_EQ(run({"golden", "kept"}).exit_code, 0);
   expect_error({"golden", "none"}, 2,
-               "none/grid.toml: cannot be read as TOML: File could not be opened for reading");
+               "none/grid.toml: found that it cannot be read (No such file or directory); allowed: a grid of "
+               "golden runs");
 }
 
 }  // namespace statistics_command_test

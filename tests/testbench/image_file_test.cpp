@@ -59,11 +59,14 @@ fs::path rgb_file(const fs::path& path, const Imath::Box2i& window, int rows, fl
   for (const char* const channel : {"R", "G", "B"})
     header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
   Imf::OutputFile file(path.c_str(), header);
+  // Every row lies at the same place, with R, G and B in it, too.
+  std::vector<float> row(std::size_t(window.max.x - window.min.x + 1), value);
   Imf::FrameBuffer buffer;
   for (const char* const channel : {"R", "G", "B"})
-    buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&value), 0, 0));
+    buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(row.data() - window.min.x),
+                                      sizeof(float), 0));
   file.setFrameBuffer(buffer);
-  file.writePixels(rows);
+  if (rows > 0) file.writePixels(rows);
   return path;
 }
 

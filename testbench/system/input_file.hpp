@@ -6,8 +6,8 @@
 
 namespace testbench {
 
-inline constexpr std::uint64_t kMostInputBytes = std::uint64_t{1} << 30;
-inline constexpr std::uint64_t kMostTomlBytes = std::uint64_t{1} << 24;  ///< files that people write
+inline constexpr std::uint64_t kMostInputBytes = std::uint64_t{1} << 34;  ///< meshes are the largest
+inline constexpr std::uint64_t kMostTomlBytes = std::uint64_t{1} << 24;   ///< files that people write
 
 /// The content of a file. Throws InputError, with `allowed` as the file that is wanted, if it cannot be read,
 /// is no regular file (FIFOs and devices may never end) or is larger than `most_bytes`.

@@ -66,7 +66,7 @@ int run(int argc, char** argv) {
     if (!error.details().empty()) std::fprintf(stderr, "%s\n", error.details().c_str());
     return testbench::kWrongInput.code;
   } catch (const std::bad_alloc&) {
-    testbench::print_error("found too little memory; allowed: a smaller film, scene or number of jobs");
+    testbench::print_error(testbench::kOutOfMemory);
     return testbench::kRunFailed.code;
   } catch (const std::exception& error) {
     testbench::print_error(error.what());

@@ -20,23 +20,7 @@ bool ends_with(std::string_view text, std::string_view ending) {
   return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
 }
 
-std::string read_file(const std::string& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw ConfigError(file + ": found a directory; allowed: a readable TOML file");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw ConfigError(file + ": cannot be read (" + std::generic_category().message(errno) +
-                      "); allowed: a readable TOML file");
-  }
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return content.str();
-}
-
-toml::table parse(const std::string& file) {
-  const std::string text = read_file(file);
+toml::table parse(const std::string& file, const std::string& text) {
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
@@ -136,7 +120,23 @@ std::string toml_value(const ParameterValue& value) {
 
 }  // namespace
 
-ChipConfig load_chip(std::string_view preset_or_file) {
+std::string read_chip_file(const std::string& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw ConfigError(file + ": found a directory; allowed: a readable TOML file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    throw ConfigError(file + ": cannot be read (" + std::generic_category().message(errno) +
+                      "); allowed: a readable TOML file");
+  }
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+ChipConfig load_chip(std::string_view preset_or_file,
+                     const std::function<std::string(const std::string& file)>& read) {
   if (!ends_with(preset_or_file, kFileEnding)) {
     if (find_preset(preset_or_file)) return preset(preset_or_file);
     std::string list;
@@ -145,7 +145,7 @@ ChipConfig load_chip(std::string_view preset_or_file) {
                       "or a file whose name ends in .toml");
   }
   const std::string file(preset_or_file);
-  const toml::table table = parse(file);
+  const toml::table table = parse(file, read(file));
   ChipConfig config = base_of(file, table);
   FileReader(file, config).read(table, "");
   validate(config, file);

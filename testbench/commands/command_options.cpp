@@ -12,6 +12,7 @@
 #include "model/config/chip_presets.hpp"
 #include "testbench/commands/named_values.hpp"
 #include "testbench/film/film_size.hpp"
+#include "testbench/run/run_settings.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
@@ -55,7 +56,7 @@ std::vector<InputName> inputs_of(const ChipOptions& chip, const Scene& scene) {
 
 model::ChipConfig SetOptions::chip(const std::string& name) const {
   try {
-    model::ChipConfig config = model::load_chip(name);
+    model::ChipConfig config = load_chip(name);
     for (const std::string& setting : settings_) {
       const std::size_t equals = setting.find('=');
       if (equals == std::string::npos)

@@ -15,6 +15,7 @@ struct CompareCommand {
   std::string a;
   std::string b;
   std::vector<std::string> tolerances;
+  std::vector<std::string> absolute;
   std::vector<std::string> ignore;
   bool with_simulator = false;
 
@@ -24,7 +25,13 @@ struct CompareCommand {
   ComparisonRules rules() const;
 };
 
-Tolerance parse_tolerance(const std::string& text) {
+struct KeyAndNumber {
+  std::string glob;
+  double number;
+};
+
+/// The value of `option`, which is a pattern of keys, "=" and a number of 0 or more.
+KeyAndNumber key_and_number(const std::string& option, const std::string& text, const std::string& form) {
   const std::size_t equals = text.rfind('=');
   const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
   std::size_t used = 0;
@@ -35,15 +42,23 @@ Tolerance parse_tolerance(const std::string& text) {
     used = 0;
   }
   if (equals == 0 || used == 0 || used != number.size() || !(relative >= 0) || !std::isfinite(relative))
-    throw InputError("--tolerance: found '" + text +
-                     "', allowed is KEYGLOB=REL, for example chip.ddr.*=0.01");
-  require_current_key("--tolerance", text.substr(0, equals));
+    throw InputError(option + ": found '" + text + "', allowed is " + form);
+  require_current_key(option, text.substr(0, equals));
   return {text.substr(0, equals), relative};
 }
 
 ComparisonRules CompareCommand::rules() const {
   ComparisonRules rules;
-  for (const std::string& text : tolerances) rules.tolerances.push_back(parse_tolerance(text));
+  for (const std::string& text : tolerances) {
+    const auto [glob, number] =
+        key_and_number("--tolerance", text, "KEYGLOB=REL, for example chip.ddr.*=0.01");
+    rules.tolerances.push_back({glob, number});
+  }
+  for (const std::string& text : absolute) {
+    const auto [glob, number] =
+        key_and_number("--absolute", text, "KEYGLOB=DISTANCE, for example chip.ddr.page_hits=10");
+    rules.absolute.push_back({glob, number});
+  }
   for (const std::string& glob : ignore) require_current_key("--ignore", glob);
   rules.ignore = ignore;
   if (!with_simulator) rules.ignore.push_back(std::string(kSimulatorSection) + ".*");
@@ -55,6 +70,8 @@ void CompareCommand::run() const {
   const FlatStatistics first = flatten(read_statistics(a));
   const Comparison comparison = compare(first, flatten(read_statistics(b)), by);
   std::fputs(difference_text(comparison.differences).c_str(), stdout);
+  if (comparison.compared == 0)
+    throw InputError("--ignore: found that it leaves no value to compare, allowed are keys that leave one");
   const std::string compared = std::to_string(comparison.compared);
   if (!comparison.differences.empty())
     throw RunError(a + " and " + b + " differ in " + std::to_string(comparison.differences.size()) + " of " +
@@ -65,8 +82,9 @@ void CompareCommand::run() const {
 }  // namespace
 
 void add_compare_command(CLI::App& app) {
-  CLI::App& command =
-      *app.add_subcommand("compare", "Compare the statistics of two runs; exit code 1 if they differ");
+  CLI::App& command = *app.add_subcommand("compare",
+                                          "Compare the statistics of two runs; exit code 1 if they differ. "
+                                          "Of a scene's path, the last name counts");
   const auto state = std::make_shared<CompareCommand>();
   command.add_option("a", state->a, "Statistics of a run")->type_name("FILE")->required();
   command.add_option("b", state->b, "Statistics of another")->type_name("FILE")->required();
@@ -74,6 +92,10 @@ void add_compare_command(CLI::App& app) {
       .add_option("--tolerance", state->tolerances,
                   "Numbers under these keys may differ by so much; the last that matches counts")
       ->type_name("KEYGLOB=REL");
+  command
+      .add_option("--absolute", state->absolute,
+                  "Or by so much in the key's own unit; the last that matches counts")
+      ->type_name("KEYGLOB=DISTANCE");
   command.add_option("--ignore", state->ignore, "Leave these keys out")->type_name("KEYGLOB");
   command.add_flag("--simulator", state->with_simulator, "Compare the simulator's times and memory, too");
   command.callback([state] { state->run(); });

@@ -9,6 +9,7 @@
 #include "model/memory/huge_pages.hpp"
 #include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/memory.hpp"
 
 namespace testbench {
 namespace {
@@ -52,6 +53,8 @@ Film::Film(FilmSize size, double scale)
       square_quantum_exponent_(2 * exponent_of(scale) - kSquareFractionBits),
       sum_units_(std::ldexp(1.0, -sum_quantum_exponent_ - 63)),
       square_units_(std::ldexp(1.0, -square_quantum_exponent_ - 63)) {
+  require_memory(checked_pixels(size) * sizeof(Pixel),
+                 "a film of " + std::to_string(size.width) + "x" + std::to_string(size.height) + " pixels");
   pixels_.reserve(checked_pixels(size));
   model::prefer_huge_pages(pixels_.data(), pixels_.capacity() * sizeof(Pixel));
   pixels_.resize(checked_pixels(size));
@@ -181,13 +184,20 @@ std::vector<double> Film::rgb() const {
 }
 
 std::string Film::sha256() const {
+  Sha256 digest;
   std::string bytes;
-  for (const double value : rgb()) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<char>(bits >> shift));
+  for (int pixel = 0; pixel < pixel_count(); ++pixel) {
+    const glm::dvec3 value = mean(pixel);
+    for (int channel = 0; channel < 3; ++channel) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &value[channel], sizeof bits);
+      for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<char>(bits >> shift));
+    }
+    if ((pixel + 1) % size_.width != 0) continue;
+    digest.add(bytes);
+    bytes.clear();
   }
-  return testbench::sha256({bytes.data(), bytes.size()});
+  return digest.finish();
 }
 
 double film_scale(const Scene& scene) {

@@ -78,7 +78,8 @@ class Film {
   // ISO C++17 has no 128-bit integer; __extension__ keeps -Wpedantic quiet about the compiler's own.
   __extension__ typedef unsigned __int128 UInt128;  // NOLINT(modernize-use-using)
 
-  struct Pixel {
+  // On 8 bytes instead of 16, so that no pixel holds padding: a film of 16384x16384 takes 26 GiB, not 28.
+  struct __attribute__((packed, aligned(8))) Pixel {
     UInt128 sum[3] = {0, 0, 0};
     UInt128 sum_of_squares[3] = {0, 0, 0};
     std::uint64_t samples = 0;

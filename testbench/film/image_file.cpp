@@ -7,16 +7,20 @@
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfVersion.h>
 #include <png.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
+#include "testbench/film/film_size.hpp"
 #include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {
@@ -32,10 +36,12 @@ struct ExrPixel {
   std::uint32_t samples;
 };
 
-std::vector<ExrPixel> exr_pixels(const Film& film) {
+/// The pixels of a row.
+std::vector<ExrPixel> exr_pixels(const Film& film, int row) {
+  const int width = film.size().width;
   std::vector<ExrPixel> pixels;
-  pixels.reserve(static_cast<std::size_t>(film.pixel_count()));
-  for (int index = 0; index < film.pixel_count(); ++index) {
+  pixels.reserve(static_cast<std::size_t>(width));
+  for (int index = row * width; index < (row + 1) * width; ++index) {
     const glm::dvec3 mean = film.mean(index);
     const glm::dvec3 variance = film.variance_of_mean(index);
     ExrPixel& pixel = pixels.emplace_back();
@@ -65,32 +71,31 @@ Imf::Header exr_header(const Film& film, const std::map<std::string, std::string
   return header;
 }
 
-/// A slice that OpenEXR addresses by the pixel (0, 0) and byte strides.
-template <class Element>
-Imf::Slice slice(Imf::PixelType type, Element* first, std::size_t pixel_bytes, int width) {
-  return Imf::Slice(type, reinterpret_cast<char*>(first), pixel_bytes,
-                    pixel_bytes * static_cast<std::size_t>(width));
+/// Where OpenEXR finds the channels of one row: every row lies at the same place, so its byte stride is 0.
+Imf::FrameBuffer one_row(ExrPixel* first) {
+  const auto slice = [](Imf::PixelType type, auto* element) {
+    return Imf::Slice(type, reinterpret_cast<char*>(element), sizeof(ExrPixel), 0);
+  };
+  Imf::FrameBuffer buffer;
+  for (int channel = 0; channel < 3; ++channel) {
+    buffer.insert(kMeanChannels[channel], slice(Imf::FLOAT, &first->mean[channel]));
+    buffer.insert(kVarianceChannels[channel], slice(Imf::FLOAT, &first->variance[channel]));
+  }
+  buffer.insert(kSamplesChannel, slice(Imf::UINT, &first->samples));
+  return buffer;
 }
 
 std::string encode_exr(const Film& film, const Imf::Header& header) {
-  std::vector<ExrPixel> pixels = exr_pixels(film);
-  const int width = film.size().width;
-  Imf::FrameBuffer buffer;
-  for (int channel = 0; channel < 3; ++channel) {
-    buffer.insert(kMeanChannels[channel],
-                  slice(Imf::FLOAT, &pixels[0].mean[channel], sizeof(ExrPixel), width));
-    buffer.insert(kVarianceChannels[channel],
-                  slice(Imf::FLOAT, &pixels[0].variance[channel], sizeof(ExrPixel), width));
-  }
-  buffer.insert(kSamplesChannel, slice(Imf::UINT, &pixels[0].samples, sizeof(ExrPixel), width));
-
   Imf::StdOSStream stream;
   {
     // OutputFile's destructor writes the line table and hides errors, so it writes to memory; the whole file
     // is written afterwards, with checks.
     Imf::OutputFile file(stream, header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(film.size().height);
+    for (int row = 0; row < film.size().height; ++row) {
+      std::vector<ExrPixel> pixels = exr_pixels(film, row);
+      file.setFrameBuffer(one_row(pixels.data()));
+      file.writePixels(1);
+    }
   }
   return stream.str();
 }
@@ -111,7 +116,12 @@ int srgb_code(double linear) {
 
 void write_png(const std::filesystem::path& path, const Film& film) {
   std::vector<unsigned char> codes;
-  for (const double value : film.rgb()) codes.push_back(static_cast<unsigned char>(srgb_code(value)));
+  codes.reserve(3 * static_cast<std::size_t>(film.pixel_count()));
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    const glm::dvec3 mean = film.mean(pixel);
+    for (int channel = 0; channel < 3; ++channel)
+      codes.push_back(static_cast<unsigned char>(srgb_code(mean[channel])));
+  }
 
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -139,6 +149,8 @@ std::vector<float> read_channels(Imf::InputFile& file, const char* const (&names
   const auto height = static_cast<std::size_t>(window.max.y - window.min.y + 1);
   std::vector<float> values(3 * width * height);
   Imf::FrameBuffer buffer;
+  // Chunks that the file does not hold leave NaN behind, which is refused below.
+  std::fill(values.begin(), values.end(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t channel = 0; channel < 3; ++channel) {
     if (file.header().channels().findChannel(names[channel]) == nullptr)
       throw InputError(path.string() + ": found no channel " + names[channel] +
@@ -149,16 +161,68 @@ std::vector<float> read_channels(Imf::InputFile& file, const char* const (&names
   }
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw InputError(path.string() + ": " + names[i % 3] + ": found a value that is not finite in pixel (" +
+                       std::to_string(i / 3 % width) + ", " + std::to_string(i / 3 / width) +
+                       "); allowed: finite numbers in every pixel");
   return values;
+}
+
+/// The first header of a file. Imf::InputFile would take memory for the lines that it announces.
+Imf::Header read_header(const std::filesystem::path& path) {
+  constexpr int kVersionAt = 4;  // behind the magic number; four bytes, the lowest first
+  Imf::StdIFStream stream(path.c_str());
+  char start[8];
+  stream.read(start, sizeof start);
+  int version = 0;
+  for (int i = 3; i >= 0; --i) version = version << 8 | static_cast<unsigned char>(start[kVersionAt + i]);
+  if (!Imf::isImfMagic(start)) throw std::invalid_argument("not an OpenEXR file");
+  Imf::Header header;
+  header.readFrom(stream, version);
+  return header;
+}
+
+/// Throws InputError for an image that is larger than a film may be, before memory is taken for its pixels: a
+/// header of a few bytes can ask for any size.
+void require_film_size(const Imf::Header& header, const std::filesystem::path& path) {
+  const Imath::Box2i window = header.dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  const auto allowed = [](std::int64_t side) { return side >= 1 && side <= kMaxFilmSide; };
+  if (!allowed(width) || !allowed(height))
+    throw InputError(path.string() + ": dataWindow: found " + std::to_string(width) + "x" +
+                     std::to_string(height) + " pixels; allowed: " + allowed_film_size());
+}
+
+/// What compression can make of a pixel at most: zlib expands by a factor below 1032, and a whole chunk of
+/// pixels is behind each entry of the line table, so a file holds at least a byte for each 1032 of its
+/// pixels'.
+void require_pixels_in_file(const Imf::Header& header, const std::filesystem::path& path) {
+  constexpr double kMostExpansion = 1032;
+  constexpr double kLeastPixelBytes = 2;
+  const Imath::Box2i window = header.dataWindow();
+  const double pixels = (double(window.max.x) - window.min.x + 1) * (double(window.max.y) - window.min.y + 1);
+  const double needed = pixels * kLeastPixelBytes / kMostExpansion;
+  const auto bytes = double(std::filesystem::file_size(path));
+  if (bytes < needed)
+    throw InputError(path.string() + ": found " + std::to_string(std::uint64_t(bytes)) + " bytes for " +
+                     std::to_string(std::uint64_t(pixels)) + " pixels; allowed: a whole OpenEXR file");
 }
 
 /// Calls `read` with the open file. Errors become InputError that name the file.
 template <class Read>
 auto read_exr(const std::filesystem::path& path, Read&& read) {
   try {
+    require_input_file(path, "an OpenEXR file with channels R, G and B");
+    const Imf::Header header = read_header(path);
+    require_film_size(header, path);
+    require_pixels_in_file(header, path);
     Imf::InputFile file(path.c_str());
     return read(file);
   } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     const std::string what = error.what();

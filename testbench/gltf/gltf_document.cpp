@@ -11,7 +11,7 @@
 #include "testbench/gltf/gltf_schema.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/input_file.hpp"
-#include "testbench/system/json_nesting.hpp"
+#include "testbench/system/nesting.hpp"
 
 namespace testbench {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -12,6 +11,7 @@
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 #include "testbench/system/processes.hpp"
 
 namespace testbench {
@@ -44,26 +44,47 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
+/// A hash is text, a counter is a number. Throws InputError for anything else.
+Json value_of_cell(const std::string& key, const std::string& cell, const std::string& place) {
+  const bool is_hash = key == "image_sha256";
+  constexpr std::size_t kHashDigits = 64;
+  if (is_hash && cell.size() == kHashDigits &&
+      cell.find_first_not_of("0123456789abcdef") == std::string::npos)
+    return cell;
+  const bool may_be_number = cell.find_first_not_of("0123456789+-.eE") == std::string::npos;
+  const Json value = may_be_number && !is_hash ? Json::parse(cell, nullptr, false) : Json();
+  if (value.is_number()) return value;
+  throw InputError(place + ": " + key + ": found '" + cell.substr(0, 40) +
+                   "'; allowed: " + (is_hash ? "64 hexadecimal digits" : "a number"));
+}
+
 GoldenTable read_table(const fs::path& path) {
-  std::ifstream file(path);
+  std::istringstream file(read_input_file(path, "a table of golden runs"));
   std::string line;
   if (!std::getline(file, line) || line.rfind("key,", 0) != 0)
     throw InputError(path.string() +
                      ": not a table of golden runs; write it anew with csx600 golden --update");
   GoldenTable table;
+  std::set<std::string> keys;
+  std::vector<std::vector<std::string>> rows;
   const std::vector<std::string> names = cells_of(line);
   for (std::size_t i = 1; i < names.size(); ++i) table.push_back({names[i], {}});
-  for (int number = 2; std::getline(file, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() != names.size())
-      throw InputError(path.string() + ":" + std::to_string(number) + ": found " +
-                       std::to_string(cells.size()) + " cells, allowed are " + std::to_string(names.size()));
-    require_current_key(path.string() + ":" + std::to_string(number), cells[0]);
-    for (std::size_t i = 1; i < cells.size(); ++i) {
-      if (cells[i].empty()) continue;
-      const Json value = Json::parse(cells[i], nullptr, false);
-      table[i - 1].second.emplace_back(cells[0], value.is_discarded() ? Json(cells[i]) : value);
-    }
+  while (std::getline(file, line)) {
+    rows.push_back(cells_of(line));
+    if (rows.back().size() != names.size())
+      throw InputError(path.string() + ":" + std::to_string(rows.size() + 1) + ": found " +
+                       std::to_string(rows.back().size()) + " cells, allowed are " +
+                       std::to_string(names.size()));
+  }
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::vector<std::string>& cells = rows[row];
+    const std::string place = path.string() + ":" + std::to_string(row + 2);
+    require_current_key(place, cells[0]);
+    if (!keys.insert(cells[0]).second)
+      throw InputError(place + ": " + cells[0] + ": found a second row; allowed: one a counter");
+    for (std::size_t i = 1; i < cells.size(); ++i)
+      if (!cells[i].empty())
+        table[i - 1].second.emplace_back(cells[0], value_of_cell(cells[0], cells[i], place));
   }
   return table;
 }

@@ -8,6 +8,8 @@
 #include "testbench/run/toml_settings.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
+#include "testbench/system/nesting.hpp"
 
 namespace testbench {
 namespace {
@@ -36,9 +38,11 @@ class GridReader {
   explicit GridReader(const fs::path& directory) : directory_(directory), file_(directory / "grid.toml") {}
 
   GoldenGrid read() {
+    const std::string text = read_input_file(file_, "a grid of golden runs", kMostTomlBytes);
+    require_shallow_toml(text, file_);
     toml::table table;
     try {
-      table = toml::parse_file(file_);
+      table = toml::parse(text, file_);
     } catch (const toml::parse_error& error) {
       throw InputError(file_ + ": cannot be read as TOML: " + std::string(error.description()));
     }

@@ -1,10 +1,10 @@
 #include "testbench/report/report_page.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "testbench/report/report_assets.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 #include "testbench/sweep/sweep_table.hpp"
@@ -17,14 +17,30 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+/// What the page reads of a sweep.json.
+const Schema& sweep_schema() {
+  static const Schema schema = {{"keys", JsonType::list},
+                                {"keys.*", JsonType::text},
+                                {"axes", JsonType::list},
+                                {"axes.*", JsonType::list},
+                                {"axes.*.*", JsonType::text},
+                                {"base", JsonType::object},
+                                {"base.*", JsonType::scalar},
+                                {"points", JsonType::list},
+                                {"points.*.inputs", JsonType::object},
+                                {"points.*.inputs.*", JsonType::scalar},
+                                {"points.*.status", JsonType::text},
+                                {"points.*.error", JsonType::text, false},
+                                {"points.*.results", JsonType::object, false},
+                                {"points.*.results.*", JsonType::number_or_none, false}};
+  return schema;
+}
+
 Json parse(const fs::path& path) {
-  const std::string text =
-      read_input_file(path, "a statistics file of `csx600 render --stats` or a directory of `csx600 sweep`");
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object())
-    throw InputError(path.string() +
-                     ": found no JSON object; allowed: a file of `csx600 render --stats` or "
-                     "`csx600 sweep`");
+  constexpr const char* kAllowed =
+      "a statistics file of `csx600 render --stats` or a directory of `csx600 sweep`";
+  const std::string text = read_input_file(path, kAllowed);
+  Json json = parse_json_object(text, path, kAllowed);
   const std::string format = json.contains("format") && json["format"].is_string()
                                  ? json["format"].get<std::string>()
                                  : std::string("none");
@@ -32,30 +48,13 @@ Json parse(const fs::path& path) {
   if (format != kStatisticsFormat && format != kSweepFormat)
     throw InputError(path.string() + ": format: found '" + format + "'; allowed: '" + kStatisticsFormat +
                      "', '" + kSweepFormat + "'");
+  if (format == kStatisticsFormat) return parse_statistics(text, path);
+  require_schema(json, sweep_schema(), text, path);
   return json;
 }
 
-/// Throws InputError unless `json` has all keys that the page reads unconditionally.
-void require_parts(const fs::path& path, const Json& json) {
-  const bool is_sweep = json["format"] == kSweepFormat;
-  const std::vector<const char*> parts =
-      is_sweep ? std::vector<const char*>{"/keys", "/axes", "/base", "/points"}
-               : std::vector<const char*>{"/scene", "/firmware/samples", "/machine",      "/segments",
-                                          "/rays",  "/counts",           "/image_sha256", "/chip_config"};
-  std::vector<const char*> all = parts;
-  if (json.contains("chip"))
-    for (const char* const part : {"/chip/control_unit/cycles_by_cause", "/chip/pe_array/kernels",
-                                   "/chip/pio", "/chip/ddr", "/simulated_cycles"})
-      all.push_back(part);
-  for (const char* const part : all)
-    if (!json.contains(Json::json_pointer(part)))
-      throw InputError(path.string() + ": " + std::string(part).substr(1) +
-                       ": found none; allowed: all that `" +
-                       (is_sweep ? "csx600 sweep" : "csx600 render --stats") + "` writes");
-}
-
 void require_current_names(const fs::path& path, const Json& json) {
-  if (json["format"] != kSweepFormat) return require_current_keys(path, flatten(json));
+  if (json["format"] != kSweepFormat) return;  // parse_statistics() has checked them
   for (const Json& point : json["points"])
     if (point.contains("results"))
       for (const auto& [key, value] : point["results"].items()) require_current_key(path, key);
@@ -116,7 +115,6 @@ std::string report_page(const std::string& run_or_sweep, const std::string& imag
   const fs::path path = fs::is_directory(run_or_sweep, ignored) ? fs::path(run_or_sweep) / "sweep.json"
                                                                 : fs::path(run_or_sweep);
   const Json json = parse(path);
-  require_parts(path, json);
   require_current_names(path, json);
   const bool is_sweep = json["format"] == kSweepFormat;
   if (is_sweep && !image.empty())

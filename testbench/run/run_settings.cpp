@@ -8,6 +8,8 @@
 #include "testbench/film/film_size.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
+#include "testbench/system/nesting.hpp"
 
 namespace testbench {
 namespace {
@@ -111,13 +113,23 @@ void write_run(RunSettings& run, const RunParameter& parameter, const Setting& s
 
 model::ChipConfig load(const std::string& chip, const std::string& origin) {
   try {
-    return model::load_chip(chip);
+    return load_chip(chip);
   } catch (const model::ConfigError& error) {
+    throw InputError(origin + error.what());
+  } catch (const InputError& error) {
     throw InputError(origin + error.what());
   }
 }
 
 }  // namespace
+
+model::ChipConfig load_chip(const std::string& preset_or_file) {
+  return model::load_chip(preset_or_file, [](const std::string& file) {
+    std::string text = read_input_file(file, "a readable TOML file", kMostTomlBytes);
+    require_shallow_toml(text, file);
+    return text;
+  });
+}
 
 const std::vector<RunParameter>& run_parameter_table() {
   static const std::vector<RunParameter> table = declare();

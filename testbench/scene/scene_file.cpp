@@ -15,6 +15,8 @@
 #include "testbench/scene/table_reader.hpp"
 #include "testbench/scene/text_lines.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
+#include "testbench/system/nesting.hpp"
 
 namespace testbench {
 namespace {
@@ -48,8 +50,10 @@ std::filesystem::path scene_path(const std::filesystem::path& scene) {
 }
 
 toml::table parse_toml(const std::filesystem::path& file) {
+  const std::string text = read_input_file(file, "a readable TOML file", kMostTomlBytes);
+  require_shallow_toml(text, file.string());
   try {
-    return toml::parse_file(file.string());
+    return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
     const auto line = error.source().begin.line;
     fail_at_key(line > 0 ? file.string() + ":" + std::to_string(line) : file.string(), "TOML",

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <limits>
 #include <unordered_map>
 
 namespace testbench {
@@ -29,10 +32,48 @@ double tolerance(const std::string& key, const ComparisonRules& rules) {
   return relative;
 }
 
+double absolute_tolerance(const std::string& key, const ComparisonRules& rules) {
+  double distance = 0;
+  for (const AbsoluteTolerance& of : rules.absolute)
+    if (matches(of.glob, key)) distance = of.distance;
+  return distance;
+}
+
+/// The sign and magnitude of b - a for integers of 64 bits, exact. nlohmann::json and double would round
+/// them.
+long double integer_distance(const Json& a, const Json& b) {
+  const auto negative = [](const Json& json) { return !json.is_number_unsigned() && json < 0; };
+  const auto bits = [&](const Json& json) {
+    return negative(json) ? std::uint64_t(json.get<std::int64_t>()) : json.get<std::uint64_t>();
+  };
+  const bool b_is_larger = negative(a) != negative(b) ? negative(a) : bits(b) > bits(a);
+  const std::uint64_t distance = b_is_larger ? bits(b) - bits(a) : bits(a) - bits(b);
+  return b_is_larger ? (long double)(distance) : -(long double)(distance);
+}
+
+/// b - a of two numbers; exact for integers, which the 64 bits of a long double's mantissa hold.
+long double distance_of(const Json& a, const Json& b) {
+  static_assert(std::numeric_limits<long double>::digits >= 64);
+  if (a.is_number_integer() && b.is_number_integer()) return integer_distance(a, b);
+  const auto value = [](const Json& json) -> long double {
+    if (json.is_number_unsigned()) return (long double)(json.get<std::uint64_t>());
+    if (json.is_number_integer()) return (long double)(json.get<std::int64_t>());
+    return json.get<double>();
+  };
+  return value(b) - value(a);
+}
+
 bool differ(const Difference& pair, const ComparisonRules& rules) {
-  if (pair.a && pair.b && *pair.a == *pair.b) return false;
-  const std::optional<double> relative = pair.relative();
-  return !relative || std::abs(*relative) > tolerance(pair.key, rules);
+  if (!pair.a || !pair.b) return true;
+  if (!pair.a->is_number() || !pair.b->is_number()) {
+    if (pair.key == "scene" && pair.a->is_string() && pair.b->is_string())
+      return scene_name_of(pair.a->get<std::string>()) != scene_name_of(pair.b->get<std::string>());
+    return *pair.a != *pair.b;
+  }
+  const long double distance = distance_of(*pair.a, *pair.b);
+  if (distance == 0) return false;
+  return !(std::abs(*pair.relative()) <= tolerance(pair.key, rules)) &&
+         !(std::abs(distance) <= absolute_tolerance(pair.key, rules));
 }
 
 /// Keys of `b` that `a` lacks follow the key that they follow in `b`.
@@ -73,7 +114,14 @@ std::optional<double> Difference::relative() const {
   const double first = a->get<double>();
   const double second = b->get<double>();
   const double largest = std::max(std::abs(first), std::abs(second));
-  return largest > 0 ? (second - first) / largest : 0;
+  return largest > 0 ? double(distance_of(*a, *b)) / largest : 0;
+}
+
+std::string scene_name_of(const std::string& path) {
+  std::filesystem::path name = std::filesystem::path(path).lexically_normal();
+  if (name.filename() == "scene.toml") name = name.parent_path();
+  if (!name.has_filename()) name = name.parent_path();
+  return name.filename().string();
 }
 
 Comparison compare(const FlatStatistics& a, const FlatStatistics& b, const ComparisonRules& rules) {

@@ -27,9 +27,21 @@ struct Tolerance {
   double relative = 0;  ///< numbers that differ by at most so much are equal
 };
 
+/// How far apart numbers under some keys may be and still be equal.
+struct AbsoluteTolerance {
+  std::string glob;     ///< shell pattern of keys
+  double distance = 0;  ///< in the unit of the key
+};
+
+/// A scene's path says where a run found the scene, not what it is: only the last name of the path counts, in
+/// the way that golden tables call scenes. "scenes/box", "scenes/box/", "/home/me/scenes/box/scene.toml" and
+/// "./box" are one scene.
+std::string scene_name_of(const std::string& path);
+
 struct ComparisonRules {
   std::vector<Tolerance> tolerances;  ///< the last that matches a key counts; without one it must be equal
   std::vector<std::string> ignore;    ///< globs
+  std::vector<AbsoluteTolerance> absolute = {};  ///< as tolerances; a number is equal that either lets pass
 };
 
 struct Comparison {

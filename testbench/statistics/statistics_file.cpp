@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
+#include "testbench/system/csv.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {
@@ -25,10 +27,14 @@ void flatten_into(const std::string& key, const Json& json, FlatStatistics& flat
     for (const auto& [name, value] : json.items()) flatten_into(prefix + name, value, flat);
   } else if (json.is_array()) {
     for (std::size_t i = 0; i < json.size(); ++i) {
-      Json element = json[i];
-      const std::string name = is_named(element) ? element["name"].get<std::string>() : std::to_string(i);
-      if (is_named(element)) element.erase("name");
-      flatten_into(prefix + name, element, flat);
+      const Json& element = json[i];
+      if (!is_named(element)) {
+        flatten_into(prefix + std::to_string(i), element, flat);
+        continue;
+      }
+      const std::string of_element = prefix + element["name"].get<std::string>() + '.';
+      for (const auto& [name, value] : element.items())
+        if (name != "name") flatten_into(of_element + name, value, flat);
     }
   } else {
     flat.emplace_back(key, json);
@@ -41,25 +47,71 @@ bool has(const Json& json, std::string key) {
 }
 
 /// Throws InputError when a counter that every such run has is missing.
-void require_counters(const Json& json, const std::string& origin) {
+void require_counters(const Json& json, const std::string& origin, bool with_simulator) {
   for (const char* key : {"scene", "firmware", "machine", "chip_preset", "chip_config", "image_sha256"})
     if (!has(json, key))
       throw InputError(origin + ": " + key + ": missing; allowed is a whole statistics file");
   const bool native = json["machine"] == "native";
   for (const Counter& counter : all_counters()) {
     const bool of_chip = counter.key.rfind("chip.", 0) == 0;
+    const bool of_simulator = counter.key.rfind(std::string(kSimulatorSection) + ".", 0) == 0;
     if (counter.key.find('*') != std::string::npos || (native && of_chip)) continue;
+    if (of_simulator && !with_simulator) continue;
     if (!has(json, counter.key))
       throw InputError(origin + ": " + counter.key + ": missing; allowed is a whole statistics file");
   }
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
+/// What the values of a statistics file may be, beside the counters'.
+const Schema& run_schema() {
+  static const Schema schema = {
+      {"format", JsonType::text},        {"scene", JsonType::text},
+      {"width", JsonType::count},        {"height", JsonType::count},
+      {"firmware", JsonType::object},    {"firmware.samples", JsonType::count},
+      {"firmware.*", JsonType::scalar},  {"machine", JsonType::text},
+      {"timing", JsonType::text},        {"chip_preset", JsonType::text},
+      {"chip_config", JsonType::object}, {"image_sha256", JsonType::text},
+      {"counts", JsonType::object},      {"segments", JsonType::count},
+      {"rays", JsonType::count},
+  };
+  return schema;
 }
+
+/// The same of a run on the chip.
+const Schema& chip_schema() {
+  static const Schema schema = {
+      {"simulated_cycles", JsonType::count},
+      {"simulated_seconds", JsonType::number},
+      {"chip.control_unit.cycles_by_cause.*", JsonType::count},
+      {"chip.pe_array.kernels", JsonType::list},
+      {"chip.pe_array.kernels.*.name", JsonType::text},
+      {"chip.pe_array.kernels.*.cycles", JsonType::count},
+      {"chip.pe_array.kernels.*.issued.*", JsonType::number},
+      {"chip.pe_array.kernels.*.runs_by_enabled_pes.*", JsonType::count},
+  };
+  return schema;
+}
+
+/// Every counter that is there is a number; some that are derived are names.
+Schema counter_schema() {
+  Schema schema;
+  for (const Counter& counter : all_counters())
+    schema.push_back({counter.key,
+                      counter.kind == CounterKind::derived ? JsonType::scalar : JsonType::number_or_none,
+                      false});
+  return schema;
+}
+
+/// Throws InputError for a value of another type than the schemas say.
+void require_statistics_types(const Json& json, const std::string& text, const std::string& origin) {
+  require_schema(json, run_schema(), text, origin);
+  if (json["machine"] != "native") require_schema(json, chip_schema(), text, origin);
+  static const Schema counters = counter_schema();
+  require_schema(json, counters, text, origin);
+}
+
+constexpr const char* kStatisticsFile = "a statistics file";
+constexpr std::uint64_t kMostStatisticsBytes = std::uint64_t{1} << 26;
 
 }  // namespace
 
@@ -77,23 +129,22 @@ void require_statistics_format(const std::string& format, const std::string& ori
 }
 
 Json read_statistics(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::error_code ignored;
-  if (!file || std::filesystem::is_directory(path, ignored))
-    throw InputError(path + ": cannot be read; allowed is a statistics file");
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  return parse_statistics(text, path);
+  return parse_statistics(read_input_file(path, kStatisticsFile, kMostStatisticsBytes), path);
 }
 
 Json parse_statistics(const std::string& text, const std::string& origin) {
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object())
-    throw InputError(origin + ": not a whole JSON object; allowed is a statistics file");
+  Json json = parse_json_object(text, origin, kStatisticsFile);
   const std::string format = has(json, "format") ? value_of(json["format"]) : "no format";
   require_statistics_format(format, origin);
   require_current_keys(origin, flatten(json));
-  require_counters(json, origin);
+  require_counters(json, origin, true);
+  require_statistics_types(json, text, origin);
   return json;
+}
+
+void require_point_statistics(const Json& json, const std::string& origin) {
+  require_counters(json, origin, false);
+  require_statistics_types(json, "", origin);
 }
 
 std::string value_of(const Json& value) {
@@ -133,8 +184,9 @@ std::string statistics_csv(const Json& statistics) {
   std::string csv = "key,unit,value,meaning\n";
   for (const auto& [key, value] : flatten(statistics)) {
     const Counter* const counter = find_counter(key);
-    csv += quoted(key) + ',' + (counter == nullptr ? "" : counter->unit) + ',' + quoted(value_of(value)) +
-           ',' + (counter == nullptr ? "" : quoted(counter->meaning)) + '\n';
+    const std::string field = value.is_string() ? csv_text(value.get<std::string>()) : value.dump();
+    csv += csv_text(key) + ',' + (counter == nullptr ? "" : counter->unit) + ',' + field + ',' +
+           (counter == nullptr ? "" : csv_text(counter->meaning)) + '\n';
   }
   return csv;
 }

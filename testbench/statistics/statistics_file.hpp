@@ -1,8 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -23,6 +23,9 @@ FlatStatistics flatten(const nlohmann::ordered_json& statistics);
 nlohmann::ordered_json read_statistics(const std::string& path);
 /// The same for a text that came from `origin`.
 nlohmann::ordered_json parse_statistics(const std::string& text, const std::string& origin);
+
+/// Checks the statistics of a sweep's point, which have no section `simulator`, as parse_statistics() does.
+void require_point_statistics(const nlohmann::ordered_json& json, const std::string& origin);
 
 /// Text for people: values with units, by group.
 std::string statistics_text(const nlohmann::ordered_json& statistics);
@@ -48,16 +51,12 @@ std::string value_of(const nlohmann::ordered_json& value);
 /// of an item.
 template <class Item>
 std::vector<Item> grouped(const std::vector<Item>& items) {
-  std::vector<std::string> groups;
+  std::unordered_map<std::string, std::size_t> place_of;
   std::vector<std::vector<Item>> by_group;
   for (const Item& item : items) {
-    const auto found = std::find(groups.begin(), groups.end(), group_of(key_of(item)));
-    if (found == groups.end()) {
-      groups.push_back(group_of(key_of(item)));
-      by_group.push_back({item});
-    } else {
-      by_group[std::size_t(found - groups.begin())].push_back(item);
-    }
+    const auto [place, is_first] = place_of.emplace(group_of(key_of(item)), by_group.size());
+    if (is_first) by_group.emplace_back();
+    by_group[place->second].push_back(item);
   }
   std::vector<Item> all;
   for (const std::vector<Item>& group : by_group) all.insert(all.end(), group.begin(), group.end());

@@ -7,21 +7,56 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 
+#include "testbench/statistics/json_file.hpp"
+#include "testbench/statistics/statistics_file.hpp"
 #include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {
 
 constexpr const char* kFormat = "csx600-sweep-points-2";
 
-std::string read_file(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
+constexpr const char* kAllowed = "a file that `csx600 sweep` wrote";
+
+const Schema& head_schema() {
+  static const Schema schema = {{"format", JsonType::text}, {"build", JsonType::text}};
+  return schema;
+}
+
+const Schema& point_schema() {
+  static const Schema schema = {
+      {"id", JsonType::text}, {"inputs.*", JsonType::scalar, false}, {"status", JsonType::text}};
+  return schema;
+}
+
+const Schema& done_schema() {
+  static const Schema schema = {{"how", JsonType::text},
+                                {"audited", JsonType::flag},
+                                {"simulator_cpu_seconds", JsonType::number},
+                                {"statistics", JsonType::object}};
+  return schema;
+}
+
+const Schema& failed_schema() {
+  static const Schema schema = {{"error", JsonType::text}};
+  return schema;
+}
+
+/// Throws InputError for a point that lacks what sweep_table.hpp reads.
+void require_point(const PointStore::Json& json, const std::string& line, const std::string& path,
+                   std::size_t number) {
+  require_schema(json, point_schema(), line, path, number);
+  const std::string status = json["status"];
+  if (status == "failed") return require_schema(json, failed_schema(), line, path, number);
+  const std::string place = path + ":" + std::to_string(number);
+  if (status != "done")
+    throw InputError(place + ": status: found '" + status + "'; allowed: 'done', 'failed'");
+  require_schema(json, done_schema(), line, path, number);
+  require_point_statistics(json["statistics"], place + ": statistics");
 }
 
 void make_directory(const std::filesystem::path& directory) {
@@ -38,7 +73,7 @@ void make_directory(const std::filesystem::path& directory) {
 PointStore::PointStore(const std::filesystem::path& directory, const std::string& build)
     : path_(directory / "points.jsonl"), build_(build) {
   make_directory(directory);
-  descriptor_ = open(path_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_CLOEXEC, 0666);
+  descriptor_ = open(path_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
     throw InputError(path_.string() + ": output file: found that it cannot be opened (" +
                      std::strerror(errno) + "); allowed: a file that can be written to");
@@ -66,34 +101,32 @@ void PointStore::lock() {
 }
 
 void PointStore::read() {
-  const std::string text = read_file(path_);
+  const std::string text = read_input_file(path_, kAllowed);
   const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-  if (whole < text.size() && ftruncate(descriptor_, off_t(whole)) != 0)
-    throw RunError(path_.string() + ": cannot be shortened: " + std::strerror(errno));
-  if (whole == 0) return append(Json{{"format", kFormat}, {"build", build_}}.dump());
   std::istringstream lines(text.substr(0, whole));
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) take_line(line, ++number, build_);
+  if (whole < text.size() && ftruncate(descriptor_, off_t(whole)) != 0)
+    throw RunError(path_.string() + ": cannot be shortened: " + std::strerror(errno));
+  if (whole == 0) append(Json{{"format", kFormat}, {"build", build_}}.dump());
 }
 
 void PointStore::take_line(const std::string& line, std::size_t number, const std::string& build) {
   const std::string place = path_.string() + ":" + std::to_string(number) + ": ";
-  Json json = Json::parse(line, nullptr, false);
-  if (!json.is_object())
-    throw InputError(place + "found no JSON object; allowed: a file that `csx600 sweep` wrote");
+  Json json = parse_json_object(line, path_.string(), kAllowed, number);
   if (number == 1) {
-    const std::string format = json.value("format", "");
+    require_schema(json, head_schema(), line, path_);
+    const std::string format = json["format"];
     if (format != kFormat)
       throw InputError(place + "format: found '" + format + "'; allowed: '" + kFormat +
                        "', or another directory (-o)");
-    if (json.value("build", "") != build)
+    if (json["build"] != build)
       throw InputError(place +
                        "build: found results of another build of csx600; allowed: this build's, or "
                        "another directory (-o)");
     return;
   }
-  if (!json.contains("id") || !json["id"].is_string())
-    throw InputError(place + "id: found none; allowed: a file that `csx600 sweep` wrote");
+  require_point(json, line, path_, number);
   const std::string id = json["id"];
   points_[id] = std::move(json);
 }
@@ -129,7 +162,7 @@ void PointStore::add(const std::string& id, Json result) {
 }
 
 std::string build_digest() {
-  return sha256(read_file("/proc/self/exe")).substr(0, 32);
+  return sha256(read_input_file("/proc/self/exe", "the program's own file")).substr(0, 32);
 }
 
 }  // namespace testbench

@@ -9,6 +9,7 @@
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/input_file.hpp"
+#include "testbench/system/nesting.hpp"
 
 namespace testbench {
 namespace {
@@ -16,7 +17,8 @@ namespace {
 constexpr std::size_t kMostSteps = 100'000;
 
 toml::table parse(const std::string& path) {
-  const std::string text = read_input_file(path, "a readable TOML file");
+  const std::string text = read_input_file(path, "a readable TOML file", kMostTomlBytes);
+  require_shallow_toml(text, path);
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {

@@ -4,6 +4,8 @@
 #include <set>
 #include <sstream>
 
+#include "testbench/system/csv.hpp"
+
 namespace testbench {
 namespace {
 
@@ -84,14 +86,8 @@ Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
   return json;
 }
 
-/// RFC 4180.
 std::string field(const Json& value) {
-  if (!value.is_string()) return value.dump();
-  std::string text = value.get<std::string>();
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
+  return value.is_string() ? csv_text(value.get<std::string>()) : value.dump();
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <deque>
 #include <exception>
+#include <new>
 #include <string>
 #include <system_error>
 
@@ -141,6 +142,8 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   } catch (const InputError&) {
     throw;
   } catch (const RunError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     throw RunError(path.string() + ": cannot be written: " + error.what());

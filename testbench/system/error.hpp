@@ -30,6 +30,9 @@ class RunError : public std::runtime_error {
   explicit RunError(const std::string& message) : std::runtime_error(message_line(message)) {}
 };
 
+/// What std::bad_alloc means to the user. Exit code 1.
+inline constexpr const char* kOutOfMemory = "out of memory: the operating system gives this run no more";
+
 /// The first line of a library's message.
 inline std::string first_line(const std::string& text) {
   return text.substr(0, text.find_first_of("\r\n"));

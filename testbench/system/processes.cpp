@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <map>
+#include <new>
 
 #include "testbench/system/descriptor.hpp"
 #include "testbench/system/error.hpp"
@@ -43,6 +44,9 @@ std::string read_all(int pipe) {
   } catch (const InputError& error) {
     status = input_error;
     text = error.details().empty() ? error.what() : error.what() + ("\n" + error.details());
+  } catch (const std::bad_alloc&) {
+    status = run_error;
+    text = kOutOfMemory;
   } catch (const std::exception& error) {
     status = run_error;
     text = error.what();

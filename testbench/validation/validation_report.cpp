@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "testbench/system/csv.hpp"
 #include "testbench/validation/validation.hpp"
 
 namespace testbench {
@@ -68,13 +69,6 @@ std::string transfers_text(const std::vector<TransferPoint>& transfers) {
   return text;
 }
 
-/// A text in CSV's quotes, since it may contain commas.
-std::string csv_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
 }  // namespace
 
 std::string validation_text(const Validation& validation) {
@@ -89,10 +83,10 @@ std::string validation_csv(const Validation& validation) {
   std::string text =
       "what,unit,chip,model,published_low,published_high,published_kind,error_percent,source\n";
   for (const Figure& figure : validation.figures)
-    text += csv_text(figure.what) + ',' + csv_text(figure.unit) + ',' + figure.chip + ',' +
+    text += csv_quoted(figure.what) + ',' + csv_quoted(figure.unit) + ',' + figure.chip + ',' +
             formatted("%.9g,%.9g,%.9g,", figure.model, figure.published_low, figure.published_high) +
             kind_name(figure.kind) + ',' + formatted("%.3f,", figure.error_percent()) +
-            csv_text(figure.source) + '\n';
+            csv_quoted(figure.source) + '\n';
   return text;
 }
 

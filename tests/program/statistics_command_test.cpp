@@ -1,5 +1,8 @@
 // `csx600 stats`, `compare` and `golden` as their users meet them.
 
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -117,18 +120,93 @@ TEST_F(StatisticsCommands, AnotherChipIsADifferenceThatIsShown) {
             1);
 }
 
+TEST_F(StatisticsCommands, AScenesPathMayBeSpelledInAnyWay) {
+  render({"--stats", "a.json"});
+  for (const std::string& spelling : {kCornellBox + "/", kCornellBox + "/scene.toml", kCornellBox + "/."}) {
+    ASSERT_EQ(run({"render", spelling, "--size", "8x6", "--samples", "2", "--stats", "b.json"}).exit_code, 0);
+    EXPECT_EQ(run({"compare", "a.json", "b.json"}).exit_code, 0) << spelling;
+  }
+  ordered_json other = ordered_json::parse(read("a.json"));
+  other["scene"] = "scenes/another_box";
+  write("b.json", other.dump());
+  EXPECT_EQ(run({"compare", "a.json", "b.json"}).exit_code, 1);
+}
+
+TEST_F(StatisticsCommands, CountsOf64BitsAreComparedExactly) {
+  render({"--stats", "a.json"});
+  ordered_json json = ordered_json::parse(read("a.json"));
+  json["counts"]["segments"] = (std::uint64_t{1} << 60) + 1;
+  write("b.json", json.dump());
+  json["counts"]["segments"] = (std::uint64_t{1} << 60) + 4;
+  write("c.json", json.dump());
+  EXPECT_EQ(run({"compare", "b.json", "c.json"}).exit_code, 1);
+  EXPECT_EQ(run({"compare", "b.json", "c.json", "--absolute", "counts.*=2"}).exit_code, 1);
+  EXPECT_EQ(run({"compare", "b.json", "c.json", "--absolute", "counts.*=3"}).exit_code, 0);
+  EXPECT_EQ(run({"compare", "b.json", "c.json", "--absolute", "chip.*=3"}).exit_code, 1);
+  expect_error(
+      {"compare", "b.json", "c.json", "--absolute", "counts.*=-1"}, 2,
+      "--absolute: found 'counts.*=-1', allowed is KEYGLOB=DISTANCE, for example chip.ddr.page_hits=10");
+  expect_error({"compare", "b.json", "c.json", "--ignore", "*"}, 2,
+               "--ignore: found that it leaves no value to compare, allowed are keys that leave one");
+}
+
+TEST_F(StatisticsCommands, NestedFilesAndPipesAreRefusedByEveryReader) {
+  render({"--stats", "a.json"});
+  std::string text = read("a.json");
+  const std::string deep(200'000, '[');
+  write("deep.json", text.substr(0, text.rfind('}')) + ",\"x\":" + deep + std::string(200'000, ']') + "}");
+  std::string parts = "a";
+  for (int i = 0; i < 100'000; ++i) parts += ".a";
+  write("deep.toml", parts + " = 1\n");
+  ASSERT_EQ(mkfifo((directory() / "pipe.json").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo((directory() / "pipe.toml").c_str(), 0600), 0);
+  for (const std::string& name : {std::string("deep"), std::string("pipe")})
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"stats", name + ".json"},
+                                                    {"report", name + ".json"},
+                                                    {"compare", "a.json", name + ".json"},
+                                                    {"params", "--chip", name + ".toml"},
+                                                    {"sweep", name + ".toml"},
+                                                    {"render", kCornellBox, "--chip", name + ".toml"}}) {
+      const CommandResult result = run(command);
+      EXPECT_EQ(result.exit_code, 2) << command[0] << ' ' << name;
+      ASSERT_EQ(result.error_lines().size(), 1u) << result.error;
+      EXPECT_NE(result.error.find(name == "deep" ? "more than 64 deep" : "a device, pipe or socket"),
+                std::string::npos)
+          << result.error;
+    }
+}
+
+TEST_F(StatisticsCommands, ValuesOfAnotherTypeAreRefusedWithLineAndKey) {
+  render({"--stats", "a.json"});
+  std::string text = read("a.json");
+  const std::size_t at = text.find("\"runs\": ");
+  ASSERT_NE(at, std::string::npos);
+  const auto line = 1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n');
+  text.replace(at, 8, "\"runs\": [], \"x\": ");
+  write("wrong.json", text);
+  const std::string message = "wrong.json:" + std::to_string(line) +
+                              ": chip.pe_array.kernels.0.runs: found a list; allowed: a number or null";
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"stats", "wrong.json"},
+                                                  {"report", "wrong.json"},
+                                                  {"compare", "a.json", "wrong.json"}})
+    expect_error(command, 2, message);
+}
+
 TEST_F(StatisticsCommands, WrongUsageAndFilesEndWithTwo) {
   render({"--stats", "a.json"});
-  expect_error({"compare", "a.json", "none.json"}, 2,
-               "none.json: cannot be read; allowed is a statistics file");
-  expect_error({"compare", ".", "a.json"}, 2, ".: cannot be read; allowed is a statistics file");
-  write("half.json", read("a.json").substr(0, 3000));
-  expect_error({"compare", "half.json", "a.json"}, 2,
-               "half.json: not a whole JSON object; allowed is a statistics file");
-  expect_error({"stats", "half.json"}, 2, "half.json: not a whole JSON object; allowed is a statistics file");
+  expect_error(
+      {"compare", "a.json", "none.json"}, 2,
+      "none.json: found that it cannot be read (No such file or directory); allowed: a statistics file");
+  expect_error({"compare", ".", "a.json"}, 2,
+               ".: found that it cannot be read (Is a directory); allowed: a statistics file");
+  write("half.json", "{\n\"format\": \"csx600-statistics-2\",\n\"scene");
+  const std::string half = "half.json:3: found no JSON object that is whole; allowed: a statistics file";
+  expect_error({"compare", "half.json", "a.json"}, 2, half);
+  expect_error({"stats", "half.json"}, 2, half);
   write("empty.json", "");
-  expect_error({"stats", "empty.json"}, 2,
-               "empty.json: not a whole JSON object; allowed is a statistics file");
+  expect_error({"stats", "empty.json"}, 2, "empty.json: found an empty file; allowed: a statistics file");
+  expect_error({"compare", "a.json", "empty.json"}, 2,
+               "empty.json: found an empty file; allowed: a statistics file");
   ordered_json other = ordered_json::parse(read("a.json"));
   other["format"] = "csx600-statistics-0";
   write("old.json", other.dump());
@@ -172,7 +250,8 @@ TEST_F(StatisticsCommands, GoldenUpdatesWithOneCommandAndShowsWhatMoved) {
   EXPECT_EQ(run({"golden", "kept", "--update"}).exit_code, 0);
   EXPECT_EQ(run({"golden", "kept"}).exit_code, 0);
   expect_error({"golden", "none"}, 2,
-               "none/grid.toml: cannot be read as TOML: File could not be opened for reading");
+               "none/grid.toml: found that it cannot be read (No such file or directory); allowed: a grid of "
+               "golden runs");
 }
 
 }  // namespace statistics_command_test

@@ -236,11 +236,15 @@ std::string refusal(const std::string& text) {
 TEST_F(CountersOfRuns, FilesThatAreNoStatisticsAreRefusedByName) {
   const std::string whole = testbench::statistics_json(statistics());
   EXPECT_EQ(refusal(whole), "");
-  const std::string not_json = "run.json: not a whole JSON object; allowed is a statistics file";
-  EXPECT_EQ(refusal(""), not_json);
-  EXPECT_EQ(refusal("[1, 2]"), not_json);
-  for (const double share : {0.1, 0.5, 0.99})
-    EXPECT_EQ(refusal(whole.substr(0, std::size_t(share * double(whole.size())))), not_json);
+  EXPECT_EQ(refusal(""), "run.json: found an empty file; allowed: a statistics file");
+  EXPECT_EQ(refusal(" \n"), "run.json: found an empty file; allowed: a statistics file");
+  EXPECT_EQ(refusal("[1, 2]"), "run.json: found no JSON object; allowed: a statistics file");
+  for (const double share : {0.1, 0.5, 0.99}) {
+    const std::string part = whole.substr(0, std::size_t(share * double(whole.size())));
+    const auto lines = 1 + std::count(part.begin(), part.end(), '\n');
+    EXPECT_EQ(refusal(part), "run.json:" + std::to_string(lines) +
+                                 ": found no JSON object that is whole; allowed: a statistics file");
+  }
   EXPECT_EQ(refusal("{}"), "run.json: format: found 'no format', allowed is 'csx600-statistics-2'");
   ordered_json other = ordered_json::parse(whole);
   other["format"] = "csx600-statistics-9";

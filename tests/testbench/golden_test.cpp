@@ -218,6 +218,11 @@ TEST_F(Golden, FilesThatAreNoTablesAreRefusedByName) {
   EXPECT_EQ(
       refused("key,one\nchip.host_link.host_dmas,1\n"),
       "a.csv:2: chip.host_link.host_dmas: found the key's old name, allowed is chip.host_link.transfers");
+  EXPECT_EQ(refused("key,one,two\na,1,2\nb,,many\n"), "a.csv:3: b: found 'many'; allowed: a number");
+  EXPECT_EQ(refused("key,one\na,[1]\n"), "a.csv:2: a: found '[1]'; allowed: a number");
+  EXPECT_EQ(refused("key,one\nimage_sha256,12\n"),
+            "a.csv:2: image_sha256: found '12'; allowed: 64 hexadecimal digits");
+  EXPECT_EQ(refused("key,one\na,1\nb,2\na,3\n"), "a.csv:4: a: found a second row; allowed: one a counter");
 }
 
 }  // namespace golden_test

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -49,6 +50,51 @@ Film small_film() {
     film.add(pixel, {0.25 * pixel, 0.5, 1.0 - 0.25 * pixel});
   }
   return film;
+}
+
+/// A file of R, G and B with this data window, of which the first `rows` are written with `value`.
+fs::path rgb_file(const fs::path& path, const Imath::Box2i& window, int rows, float value) {
+  Imf::Header header(window, window);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const char* const channel : {"R", "G", "B"})
+    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  Imf::OutputFile file(path.c_str(), header);
+  // Every row lies at the same place, with R, G and B in it, too.
+  std::vector<float> row(std::size_t(window.max.x - window.min.x + 1), value);
+  Imf::FrameBuffer buffer;
+  for (const char* const channel : {"R", "G", "B"})
+    buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(row.data() - window.min.x),
+                                      sizeof(float), 0));
+  file.setFrameBuffer(buffer);
+  if (rows > 0) file.writePixels(rows);
+  return path;
+}
+
+TEST_F(ImageFileTest, exr_of_another_size_than_a_film_is_refused_before_memory_is_taken) {
+  const std::string allowed = "allowed: WIDTHxHEIGHT, each 1 to 16384";
+  const fs::path wide = rgb_file(directory_ / "wide.exr", {{0, 0}, {16384, 1}}, 2, 1);
+  test_support::expect_input_error([&] { testbench::read_exr_rgb(wide); },
+                                   {wide.string() + ": dataWindow: found 16385x2 pixels", allowed});
+  const fs::path far = rgb_file(directory_ / "far.exr", {{-1000, -400000}, {1000, 400000}}, 0, 1);
+  test_support::expect_input_error([&] { testbench::read_exr_film(far); },
+                                   {"found 2001x800001 pixels", allowed});
+  const fs::path hollow = rgb_file(directory_ / "hollow.exr", {{0, 0}, {16383, 16383}}, 0, 1);
+  test_support::expect_input_error([&] { testbench::read_exr_rgb(hollow); },
+                                   {hollow.string(), "for 268435456 pixels; allowed: a whole OpenEXR file"});
+}
+
+TEST_F(ImageFileTest, exr_with_missing_or_endless_pixels_is_refused) {
+  const Imath::Box2i window({0, 0}, {3, 63});
+  EXPECT_EQ(testbench::read_exr_rgb(rgb_file(directory_ / "whole.exr", window, 64, 2)).rgb[600], 2.0f);
+  const fs::path part = rgb_file(directory_ / "part.exr", window, 20, 2);
+  test_support::expect_input_error([&] { testbench::read_exr_rgb(part); }, {part.string()});
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    const fs::path endless = rgb_file(directory_ / "endless.exr", window, 64, value);
+    test_support::expect_input_error(
+        [&] { testbench::read_exr_rgb(endless); },
+        {endless.string() + ": R: found a value that is not finite in pixel (0, 0)"});
+  }
 }
 
 TEST_F(ImageFileTest, exr_returns_the_means_row_by_row_from_the_top) {

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "testbench/system/error.hpp"
+#include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace point_store_test {
@@ -19,7 +20,17 @@ using testbench::RunError;
 
 class PointStoreTest : public test_support::DirectoryFixture {
  protected:
-  static PointStore::Json done(int cycles) { return {{"status", "done"}, {"cycles", cycles}}; }
+  /// The line of a point; a failed one needs no statistics.
+  static PointStore::Json done(int cycles) {
+    return {{"status", "failed"}, {"error", "full"}, {"cycles", cycles}};
+  }
+  /// The message of the InputError of a store that holds `lines` behind its first.
+  std::string refusal(const std::string& lines) {
+    std::ofstream(directory_ / "points.jsonl")
+        << "{\"format\":\"csx600-sweep-points-2\",\"build\":\"build\"}\n"
+        << lines;
+    return test_support::input_error_of([&] { PointStore(directory_, "build"); });
+  }
   void append(const std::string& text) { std::ofstream(directory_ / "points.jsonl", std::ios::app) << text; }
 };
 
@@ -95,6 +106,29 @@ TEST_F(PointStoreTest, RefusesWhatIsNotItsOwn) {
   EXPECT_THROW(PointStore("/proc/nowhere", "build"), InputError);
   std::ofstream(directory_ / "file") << "";
   EXPECT_THROW(PointStore(directory_ / "file", "build"), InputError);
+}
+
+TEST_F(PointStoreTest, LinesAreCheckedBeforeAnythingIsWritten) {
+  const std::string place = (directory_ / "points.jsonl").string() + ":3: ";
+  const std::string good = "{\"id\":\"a\",\"status\":\"failed\",\"error\":\"full\"}\n";
+  const std::string cut_off = "{\"id\":\"b\",";
+  for (
+      const auto& [line, message] : std::vector<std::pair<std::string, std::string>>{
+          {R"({"id":"a"})", "status: found none; allowed: a text"},
+          {R"({"id":7,"status":"done"})", "id: found 7; allowed: a text"},
+          {R"({"id":"a","status":"lost"})", "status: found 'lost'; allowed: 'done', 'failed'"},
+          {R"({"id":"a","status":"failed"})", "error: found none; allowed: a text"},
+          {R"({"id":"a","status":"done","how":"full","audited":1})",
+           "audited: found 1; allowed: true or false"},
+          {R"({"id":"a","status":"done","how":"full","audited":false,"simulator_cpu_seconds":1,"statistics":{}})",
+           "statistics: scene: missing; allowed is a whole statistics file"},
+          {R"({"id":"a","status":"done","how":"full","audited":false,"simulator_cpu_seconds":1,"statistics":[]})",
+           "statistics: found a list; allowed: an object"}}) {
+    EXPECT_EQ(refusal(good + line + "\n" + cut_off), place + message);
+    EXPECT_NE(read("points.jsonl").find(cut_off), std::string::npos) << "shortened";
+  }
+  EXPECT_NE(refusal(good + std::string(100'000, '[') + "\n").find(place + "found values nested"),
+            std::string::npos);
 }
 
 TEST_F(PointStoreTest, IsOfOneProcessAtATime) {

@@ -85,7 +85,7 @@ void for_each_component(GltfDocument& document, const ElementRange& elements, co
                                                                            i * stride + k * component_bytes));
 }
 
-/// Replaces the elements that accessor.sparse names (section 3.6.2.3).
+/// Replaces the elements that accessor.sparse names (glTF 2.0, section 3.6.2.3).
 void replace_sparse(GltfDocument& document, const nlohmann::json& accessor, const std::string& where,
                     GltfNumbers& numbers) {
   const nlohmann::json& sparse = accessor.at("sparse");
@@ -162,8 +162,8 @@ void require_gltf_form(const GltfDocument& document, const nlohmann::json& acces
       std::any_of(form.types.begin(), form.types.end(), [&](const char* one) { return type == one; });
   if (!has_component || !has_type)
     document.fail(where,
-                  "an accessor of " + type + " of component type " + json_in_message(accessor["componentType"]) +
-                      (is_normalized ? " normalized" : ""),
+                  "an accessor of " + type + " of component type " +
+                      json_in_message(accessor["componentType"]) + (is_normalized ? " normalized" : ""),
                   allowed_by(form));
 }
 

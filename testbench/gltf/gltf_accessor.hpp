@@ -10,7 +10,7 @@
 
 namespace testbench {
 
-/// The component types of an accessor (specification, section 3.6.2.2).
+/// The component types of an accessor (glTF 2.0, section 3.6.2.2).
 enum class GltfComponent { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 
 /// What an accessor may be for a certain use.
@@ -30,7 +30,7 @@ GltfNumbers read_gltf_accessor(GltfDocument& document, std::size_t accessor, con
 std::vector<std::uint32_t> read_gltf_indices(GltfDocument& document, std::size_t accessor, std::size_t limit,
                                              const std::string& where);
 
-/// Turns integers into fractions if the accessor says normalized (section 3.6.2.2).
+/// Turns integers into fractions if the accessor says normalized (glTF 2.0, section 3.6.2.2).
 void normalize_gltf_numbers(const nlohmann::json& accessor, GltfNumbers& numbers);
 
 /// Throws InputError if the accessor has another form than `form`.

@@ -109,7 +109,7 @@ void GltfDocument::remember_images() const {
   }
 }
 
-/// The JSON of a file: all of a .gltf file, the first chunk of a .glb (specification, section 4). Which of
+/// The JSON of a file: all of a .gltf file, the first chunk of a .glb (glTF 2.0, section 4). Which of
 /// them it is, its first four bytes say.
 std::string GltfDocument::json_text(std::string bytes) {
   if (bytes.compare(0, 4, "glTF") != 0) return bytes;
@@ -146,7 +146,8 @@ void GltfDocument::require_version() const {
     fail("/asset", asset == nullptr ? "none" : json_in_message(*asset), "an object");
   check_gltf(file_, root_, *asset, "asset", "/asset");
   const nlohmann::json& version = asset->at("version");
-  if (version_of(version.get<std::string>()).first != 2) fail("/asset/version", json_in_message(version), "2.0");
+  if (version_of(version.get<std::string>()).first != 2)
+    fail("/asset/version", json_in_message(version), "2.0");
   if (const nlohmann::json* least = find_gltf(*asset, "minVersion"))
     if (version_of(least->get<std::string>()) != std::pair(2, 0))
       fail("/asset/minVersion", json_in_message(*least), "2.0");

@@ -50,7 +50,7 @@ constexpr GltfType map(GltfType of) {
   return of;
 }
 
-// glTF 2.0 specification, section 5 "Properties Reference", and the extensions' JSON schemas. What a static
+// glTF 2.0, section 5 "Properties Reference", and the extensions' JSON schemas. What a static
 // picture of triangles does not need (animations, samplers, images) has no rule: it is never looked at.
 // Top-level arrays may be empty, which the specification does not allow: exporters write such.
 constexpr GltfRule kGltfRules[] = {

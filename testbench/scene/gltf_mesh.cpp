@@ -74,7 +74,7 @@ class Collector {
     }
   }
 
-  /// The transforms of a skin's joints (section 3.7.3.1) to the scene's coordinates.
+  /// The transforms of a skin's joints (glTF 2.0, section 3.7.3.1) to the scene's coordinates.
   std::vector<glm::dmat4> joint_transforms(std::size_t skin) {
     const nlohmann::json& source = document_.element("skins", skin);
     const auto joints = source["joints"].get<std::vector<std::size_t>>();

@@ -25,7 +25,7 @@ bool is_finite(const glm::dmat4& matrix) {
                      [](double value) { return std::isfinite(value); });
 }
 
-/// One way to give a transform, and one that keeps points points (section 3.5.3).
+/// One way to give a transform, and one that keeps points points (glTF 2.0, section 3.5.3).
 void require_transform(const GltfDocument& document, const nlohmann::json& node, const std::string& pointer) {
   if (const nlohmann::json* const matrix = find_gltf(node, "matrix")) {
     for (const char* other : {"translation", "rotation", "scale"})

@@ -23,7 +23,7 @@ GltfNodes read_gltf_nodes(GltfDocument& document);
 std::vector<glm::dmat4> read_gltf_instances(GltfDocument& document, std::size_t node);
 
 /// The camera of a node; std::nullopt for an orthographic one, which is noted. It looks along -z with +y up
-/// (specification, section 3.10).
+/// (glTF 2.0, section 3.10).
 std::optional<GltfCamera> read_gltf_camera(GltfDocument& document, std::size_t node,
                                            const glm::dmat4& transform);
 

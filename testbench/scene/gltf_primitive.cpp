@@ -104,7 +104,7 @@ class PrimitiveReader {
                      std::to_string(vertices_) + ", one for each vertex");
   }
 
-  /// Adds the targets' attribute at their weights (section 3.7.2.2).
+  /// Adds the targets' attribute at their weights (glTF 2.0, section 3.7.2.2).
   void add_targets(const std::string& name, const GltfForm& form, GltfNumbers& numbers) {
     const nlohmann::json* const targets = find_gltf(source_, "targets");
     if (targets == nullptr) return;

@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/files/atomic_file.hpp"
+#include "testbench/files/file_identity.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/file_identity.hpp"
 
 namespace testbench {
 namespace {

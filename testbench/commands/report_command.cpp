@@ -4,9 +4,9 @@
 
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
+#include "testbench/files/atomic_file.hpp"
 #include "testbench/report/report_page.hpp"
 #include "testbench/sweep/sweep_table.hpp"
-#include "testbench/system/atomic_file.hpp"
 
 namespace testbench {
 namespace {

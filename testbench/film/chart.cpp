@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/files/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {

@@ -17,10 +17,10 @@
 #include <new>
 #include <stdexcept>
 
+#include "testbench/files/atomic_file.hpp"
+#include "testbench/files/input_file.hpp"
 #include "testbench/film/film_size.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {

@@ -7,10 +7,10 @@
 #include <limits>
 #include <set>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/gltf/gltf_compression.hpp"
 #include "testbench/gltf/gltf_schema.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 #include "testbench/system/nesting.hpp"
 
 namespace testbench {

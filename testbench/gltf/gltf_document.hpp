@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/system/file_reach.hpp"
+#include "testbench/files/file_reach.hpp"
 #include "testbench/system/notes.hpp"
 
 namespace testbench {

@@ -5,13 +5,13 @@
 #include <set>
 #include <sstream>
 
+#include "testbench/files/atomic_file.hpp"
+#include "testbench/files/input_file.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/render_report.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 #include "testbench/system/processes.hpp"
 
 namespace testbench {

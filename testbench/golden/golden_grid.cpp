@@ -2,13 +2,13 @@
 #include <map>
 #include <set>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/golden/golden.hpp"
 #include "testbench/run/run_settings.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/run/toml_settings.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 #include "testbench/system/nesting.hpp"
 
 namespace testbench {

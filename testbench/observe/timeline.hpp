@@ -7,7 +7,7 @@
 
 #include "model/csx600.hpp"
 #include "model/observe/chip_observer.hpp"
-#include "testbench/system/output_stream.hpp"
+#include "testbench/files/output_stream.hpp"
 
 namespace testbench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/files/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {

@@ -9,8 +9,8 @@
 #include "model/waves/wave_probe.hpp"
 #include "model/waves/wave_signals.hpp"
 #include "model/waves/wave_view.hpp"
+#include "testbench/files/output_stream.hpp"
 #include "testbench/observe/observation_options.hpp"
-#include "testbench/system/output_stream.hpp"
 
 namespace testbench {
 

@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/report/report_assets.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 #include "testbench/sweep/sweep_table.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "firmware/path_tracer/program/program_options.hpp"
 #include "model/config/chip_file.hpp"
+#include "testbench/files/input_file.hpp"
 #include "testbench/film/film_size.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 #include "testbench/system/nesting.hpp"
 
 namespace testbench {

@@ -7,10 +7,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "testbench/system/file_reach.hpp"
-#include "testbench/system/notes.hpp"
+#include "testbench/files/file_reach.hpp"
 #include "testbench/scene/polygon.hpp"
 #include "testbench/scene/scene.hpp"
+#include "testbench/system/notes.hpp"
 
 namespace testbench {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <string_view>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/scene/mtl_file.hpp"
 #include "testbench/scene/text_lines.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {

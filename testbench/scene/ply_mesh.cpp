@@ -5,10 +5,10 @@
 #include <cstring>
 #include <string>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/scene/ply_header.hpp"
 #include "testbench/scene/text_lines.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {

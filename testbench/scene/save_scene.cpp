@@ -9,7 +9,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/files/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {

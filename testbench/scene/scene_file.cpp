@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/obj_mesh.hpp"
@@ -15,7 +16,6 @@
 #include "testbench/scene/table_reader.hpp"
 #include "testbench/scene/text_lines.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 #include "testbench/system/nesting.hpp"
 
 namespace testbench {

@@ -5,12 +5,12 @@
 #include <iomanip>
 #include <sstream>
 
+#include "testbench/files/csv.hpp"
+#include "testbench/files/input_file.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
-#include "testbench/system/csv.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {

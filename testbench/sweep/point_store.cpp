@@ -9,11 +9,11 @@
 #include <cstring>
 #include <sstream>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 #include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 
 namespace testbench {
 namespace {

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <set>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/run/toml_settings.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 #include "testbench/system/nesting.hpp"
 
 namespace testbench {

@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-#include "testbench/system/csv.hpp"
+#include "testbench/files/csv.hpp"
 
 namespace testbench {
 namespace {

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "testbench/system/csv.hpp"
+#include "testbench/files/csv.hpp"
 #include "testbench/validation/validation.hpp"
 
 namespace testbench {

@@ -1,6 +1,6 @@
 // Files that appear whole or not at all, and what a killed process leaves of them.
 
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/files/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,8 +10,8 @@
 #include <csignal>
 #include <fstream>
 
+#include "testbench/files/file_identity.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/file_identity.hpp"
 
 namespace atomic_file_test {
 

@@ -1,4 +1,4 @@
-#include "testbench/system/csv.hpp"
+#include "testbench/files/csv.hpp"
 
 #include <gtest/gtest.h>
 

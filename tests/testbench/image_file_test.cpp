@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "testbench/files/atomic_file.hpp"
 #include "testbench/film/image_file.hpp"
-#include "testbench/system/atomic_file.hpp"
 #include "testbench/system/error.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"

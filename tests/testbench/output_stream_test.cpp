@@ -1,4 +1,4 @@
-#include "testbench/system/output_stream.hpp"
+#include "testbench/files/output_stream.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/files/atomic_file.hpp"
 
 namespace testbench {
 

@@ -1,4 +1,4 @@
-#include "testbench/system/file_identity.hpp"
+#include "testbench/files/file_identity.hpp"
 
 #include <sys/stat.h>
 

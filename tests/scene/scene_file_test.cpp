@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "testbench/files/input_file.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
-#include "testbench/system/input_file.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 

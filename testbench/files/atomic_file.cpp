@@ -1,4 +1,4 @@
-#include "testbench/system/atomic_file.hpp"
+#include "testbench/files/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

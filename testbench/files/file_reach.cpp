@@ -1,4 +1,4 @@
-#include "testbench/system/file_reach.hpp"
+#include "testbench/files/file_reach.hpp"
 
 #include <algorithm>
 

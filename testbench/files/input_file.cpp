@@ -1,4 +1,4 @@
-#include "testbench/system/input_file.hpp"
+#include "testbench/files/input_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

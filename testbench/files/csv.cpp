@@ -1,4 +1,4 @@
-#include "testbench/system/csv.hpp"
+#include "testbench/files/csv.hpp"
 
 namespace testbench {
 namespace {

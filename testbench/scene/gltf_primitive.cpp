@@ -129,7 +129,8 @@ class PrimitiveReader {
     for (std::size_t i = 0; i < vertices_; ++i) result_.positions.push_back(glm::make_vec3(positions[i]));
   }
 
-  /// Section 3.7.2.1: COLOR_0 is linear and multiplies the base colour; its components are clamped to 0..1.
+  /// COLOR_0 (glTF 2.0, section 3.7.2.1) is linear and multiplies the base colour; its components are clamped
+  /// to 0..1.
   void read_colours() {
     GltfNumbers colours = attribute("COLOR_0", kColourForm);
     if (colours.width == 0) return;

@@ -34,7 +34,7 @@ struct AbsoluteTolerance {
 };
 
 /// A scene's path says where a run found the scene, not what it is: only the last name of the path counts, in
-/// the way that golden tables call scenes. "scenes/box", "scenes/box/", "/home/me/scenes/box/scene.toml" and
+/// the way that golden tables call scenes. "models/box", "models/box/", "/home/me/models/box/scene.toml" and
 /// "./box" are one scene.
 std::string scene_name_of(const std::string& path);
 

@@ -127,7 +127,7 @@ TEST_F(StatisticsCommands, AScenesPathMayBeSpelledInAnyWay) {
     EXPECT_EQ(run({"compare", "a.json", "b.json"}).exit_code, 0) << spelling;
   }
   ordered_json other = ordered_json::parse(read("a.json"));
-  other["scene"] = "scenes/another_box";
+  other["scene"] = "models/another_box";
   write("b.json", other.dump());
   EXPECT_EQ(run({"compare", "a.json", "b.json"}).exit_code, 1);
 }

@@ -236,7 +236,7 @@ TEST_F(GltfSchema, RefusesJsonThatNestsTooDeep) {
       [&] {
         testbench::load_gltf(path, {testbench::FileReach(path.parent_path()), std::nullopt});
       },
-      {"a.gltf", "128 levels"});
+      {"a.gltf", "64 levels"});
 }
 
 TEST_F(GltfSchema, ReadsBuffersBelowItsFolderOnly) {

@@ -122,7 +122,8 @@ DracoPrimitive decode_draco(const GltfDocument& document, const GltfBytes& packe
   for (const auto& [name, id] : extension["attributes"].items()) {
     const draco::PointAttribute* const attribute = mesh->GetAttributeByUniqueId(id.get<std::uint32_t>());
     if (attribute == nullptr)
-      document.fail(pointer + "/attributes/" + name, json_in_message(id), "the number of an attribute in the data");
+      document.fail(pointer + "/attributes/" + name, json_in_message(id),
+                    "the number of an attribute in the data");
     primitive.attributes.emplace(name, numbers_of(*mesh, *attribute));
   }
   for (std::uint32_t face = 0; face < mesh->num_faces(); ++face)

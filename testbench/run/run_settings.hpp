@@ -53,8 +53,8 @@ void require_allowed(const Setting& setting);
 /// other.
 RunSettings make_settings(const std::vector<Setting>& settings);
 
-/// model::load_chip() with the limits of input files: a regular file (FIFOs and devices may never end), not too
-/// large, not nested too deep. Throws InputError for those and model::ConfigError.
+/// model::load_chip() with the limits of input files: a regular file (FIFOs and devices may never end), not
+/// too large, not nested too deep. Throws InputError for those and model::ConfigError.
 model::ChipConfig load_chip(const std::string& preset_or_file);
 
 /// The value of every key; chip and firmware.

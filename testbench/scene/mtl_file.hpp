@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "testbench/system/notes.hpp"
 #include "testbench/scene/scene.hpp"
+#include "testbench/system/notes.hpp"
 
 namespace testbench {
 

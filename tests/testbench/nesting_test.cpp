@@ -6,10 +6,10 @@
 
 namespace nesting_test {
 
+using test_support::expect_input_error;
 using testbench::kMostNesting;
 using testbench::require_shallow_json;
 using testbench::require_shallow_toml;
-using test_support::expect_input_error;
 
 std::string times(std::size_t count, const std::string& text) {
   std::string all;

@@ -47,8 +47,7 @@ std::string beginning_of(const fs::path& target) {
 bool is_temporary_of(const std::string& beginning, const std::string& name) {
   if (name.size() < beginning.size() + kEnding.size()) return false;
   const std::size_t end = name.size() - kEnding.size();
-  if (name.compare(0, beginning.size(), beginning) != 0 || name.compare(end, std::string::npos, kEnding) != 0)
-    return false;
+  if (name.compare(0, beginning.size(), beginning) != 0 || name.substr(end) != kEnding) return false;
   const std::string numbers = name.substr(beginning.size(), end - beginning.size());
   const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
   const std::size_t dot = numbers.find('.');

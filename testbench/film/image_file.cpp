@@ -186,7 +186,7 @@ Imf::Header read_header(const std::filesystem::path& path) {
 /// Throws InputError for an image that is larger than a film may be, before memory is taken for its pixels: a
 /// header of a few bytes can ask for any size.
 void require_film_size(const Imf::Header& header, const std::filesystem::path& path) {
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   const auto allowed = [](std::int64_t side) { return side >= 1 && side <= kMaxFilmSide; };
@@ -201,7 +201,7 @@ void require_film_size(const Imf::Header& header, const std::filesystem::path& p
 void require_pixels_in_file(const Imf::Header& header, const std::filesystem::path& path) {
   constexpr double kMostExpansion = 1032;
   constexpr double kLeastPixelBytes = 2;
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   const double pixels = (double(window.max.x) - window.min.x + 1) * (double(window.max.y) - window.min.y + 1);
   const double needed = pixels * kLeastPixelBytes / kMostExpansion;
   const auto bytes = double(std::filesystem::file_size(path));

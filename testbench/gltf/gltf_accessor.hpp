@@ -23,7 +23,7 @@ struct GltfForm {
 /// The elements of one accessor, dense, sparse or both, as numbers; normalized integers as fractions. Throws
 /// InputError, which names `where` in the file, for one that reaches beyond its buffer view or has another
 /// form.
-GltfNumbers read_gltf_accessor(GltfDocument& document, std::size_t accessor, const GltfForm& form,
+GltfNumbers read_gltf_accessor(GltfDocument& document, std::size_t index, const GltfForm& form,
                                const std::string& where);
 
 /// The same of unsigned integers below `limit`.

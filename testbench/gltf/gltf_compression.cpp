@@ -122,7 +122,7 @@ DracoPrimitive decode_draco(const GltfDocument& document, const GltfBytes& packe
   for (const auto& [name, id] : extension["attributes"].items()) {
     const draco::PointAttribute* const attribute = mesh->GetAttributeByUniqueId(id.get<std::uint32_t>());
     if (attribute == nullptr)
-      document.fail(pointer + "/attributes/" + name, json_in_message(id),
+      document.fail(std::string(pointer).append("/attributes/").append(name), json_in_message(id),
                     "the number of an attribute in the data");
     primitive.attributes.emplace(name, numbers_of(*mesh, *attribute));
   }

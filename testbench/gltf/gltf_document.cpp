@@ -236,7 +236,7 @@ std::string GltfDocument::buffer_bytes(const nlohmann::json& source, std::size_t
     return read_input_file(file, "the buffer that " + file_ + " names");
   }
   const std::size_t start = text.find(";base64,");
-  const std::string bytes = start == std::string::npos ? "" : decode_base64(text.substr(start + 8));
+  std::string bytes = start == std::string::npos ? "" : decode_base64(text.substr(start + 8));
   if (bytes.empty()) fail(pointer + "/uri", json_in_message(*uri), "a file, or data:...;base64,...");
   return bytes;
 }

@@ -36,7 +36,7 @@ class GltfDocument {
   /// The bytes of a buffer view, decompressed if need be.
   GltfBytes view(std::size_t index);
   /// A range of a buffer. @param pointer what asks for it, in the message
-  GltfBytes range(std::size_t buffer, std::size_t offset, std::size_t length, const std::string& pointer);
+  GltfBytes range(std::size_t index, std::size_t offset, std::size_t length, const std::string& pointer);
 
   /// "mesh 3 'chair'"
   std::string named(const char* array_name, const char* kind, std::size_t index) const;

@@ -92,7 +92,8 @@ class GltfChecker {
     if (is_array ? !value.is_array() : !value.is_object()) fail(value, type, pointer);
     if (is_array && (value.size() < type.least_length || value.size() > type.most_length))
       fail_in_gltf(file_, pointer, "an array of " + std::to_string(value.size()), allowed_by(type));
-    for (const auto& [key, element] : value.items()) check_member(element, type, pointer + "/" + key);
+    for (const auto& [key, element] : value.items())
+      check_member(element, type, std::string(pointer).append("/").append(key));
   }
 
   /// An element of an array, which may be a map of its own (targets of a primitive).

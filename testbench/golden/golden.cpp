@@ -52,7 +52,7 @@ Json value_of_cell(const std::string& key, const std::string& cell, const std::s
       cell.find_first_not_of("0123456789abcdef") == std::string::npos)
     return cell;
   const bool may_be_number = cell.find_first_not_of("0123456789+-.eE") == std::string::npos;
-  const Json value = may_be_number && !is_hash ? Json::parse(cell, nullptr, false) : Json();
+  Json value = may_be_number && !is_hash ? Json::parse(cell, nullptr, false) : Json();
   if (value.is_number()) return value;
   throw InputError(place + ": " + key + ": found '" + cell.substr(0, 40) +
                    "'; allowed: " + (is_hash ? "64 hexadecimal digits" : "a number"));

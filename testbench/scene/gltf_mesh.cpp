@@ -109,7 +109,7 @@ class Collector {
     std::vector<glm::dvec3> positions;
     positions.reserve(primitive.positions.size());
     for (std::uint32_t i = 0; i < primitive.positions.size(); ++i)
-      positions.push_back(glm::dvec3(of_vertex(i) * glm::dvec4(primitive.positions[i], 1.0)));
+      positions.emplace_back(of_vertex(i) * glm::dvec4(primitive.positions[i], 1.0));
     const nlohmann::json& source = document_.element("meshes", place.mesh)["primitives"][place.primitive];
     const std::size_t material = size_or(source, "material", surfaces_.size());
     const bool emits_from_both_sides = material < surfaces_.size() && surface(material).is_double_sided &&

@@ -152,7 +152,9 @@ class PrimitiveReader {
       const GltfNumbers joints = attribute("JOINTS_" + number, kJointForm);
       const GltfNumbers weights = attribute("WEIGHTS_" + number, kWeightForm);
       if ((joints.width == 0) != (weights.width == 0))
-        document_.fail(where_, "only one of JOINTS_" + number + " and WEIGHTS_" + number, "both or none");
+        document_.fail(where_,
+                       std::string("only one of JOINTS_").append(number).append(" and WEIGHTS_") + number,
+                       "both or none");
       if (set == 0 && joints.width == 0) document_.fail(where_, "a skin without JOINTS_0", "with it");
       if (joints.width == 0) break;
       for (std::size_t i = 0; i < vertices_ * 4; ++i)

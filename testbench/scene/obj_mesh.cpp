@@ -115,13 +115,14 @@ class ObjContentReader {
   bool add_library(std::string_view name) {
     std::string with_slashes(name);
     std::replace(with_slashes.begin(), with_slashes.end(), '\\', '/');
-    for (const std::string& way : {std::string(name), with_slashes}) {
-      const std::filesystem::path library = file_.parent_path() / way;
-      if (way.empty() || !reach_.holds(library, place_.text() + ": mtllib")) continue;
-      if (read_libraries_.insert(library).second) add_materials(library);
-      return true;
-    }
-    return false;
+    return add_library_at(std::string(name)) || add_library_at(with_slashes);
+  }
+
+  bool add_library_at(const std::string& path) {
+    const std::filesystem::path library = file_.parent_path() / path;
+    if (path.empty() || !reach_.holds(library, place_.text() + ": mtllib")) return false;
+    if (read_libraries_.insert(library).second) add_materials(library);
+    return true;
   }
 
   void add_materials(const std::filesystem::path& library) {

@@ -1,7 +1,6 @@
 #include "testbench/commands/command_options.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "testbench/run/timing_name.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {
@@ -147,8 +147,7 @@ void add_allow_outside_flag(CLI::App& command, bool& is_outside_allowed) {
 }
 
 void print_notes(const Scene& scene) {
-  for (const std::string& line : scene.notes.lines())
-    std::fprintf(stderr, "csx600: note: %s\n", line.c_str());
+  for (const std::string& line : scene.notes.lines()) print_note(line);
 }
 
 }  // namespace testbench

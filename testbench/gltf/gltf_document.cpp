@@ -252,7 +252,7 @@ std::string GltfDocument::file_of_uri(const std::string& uri, const std::string&
 std::string GltfDocument::named(const char* array_name, const char* kind, std::size_t index) const {
   const nlohmann::json* const name = find_gltf(element(array_name, index), "name");
   return std::string(kind) + " " + std::to_string(index) +
-         (name == nullptr ? "" : " '" + text_in_message(name->get<std::string>()) + "'");
+         (name == nullptr ? "" : " '" + name->get<std::string>() + "'");
 }
 
 void GltfDocument::check(const nlohmann::json& value, const char* object, const std::string& pointer) const {

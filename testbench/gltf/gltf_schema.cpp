@@ -161,19 +161,10 @@ std::string json_in_message(const nlohmann::json& value) {
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-/// Names come from the file: whatever is in them, the message stays one line of moderate length.
-std::string text_in_message(const std::string& text) {
-  constexpr std::size_t kLongest = 200;
-  std::string line = text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
-  for (char& c : line)
-    if (c < ' ' || c > '~') c = '?';
-  return line;
-}
-
 void fail_in_gltf(const std::string& file, const std::string& where, const std::string& found,
                   const std::string& allowed) {
-  throw InputError(file + ": " + (where.empty() ? "" : text_in_message(where) + ": ") + "found " +
-                   text_in_message(found) + "; allowed: " + allowed);
+  throw InputError(file + ": " + (where.empty() ? "" : where + ": ") + "found " + found +
+                   "; allowed: " + allowed);
 }
 
 }  // namespace testbench

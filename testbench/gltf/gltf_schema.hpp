@@ -60,9 +60,6 @@ void check_gltf(const std::string& file, const nlohmann::json& root, const nlohm
 /// A JSON value for a message: one line of printable ASCII, cut off after 60 characters.
 std::string json_in_message(const nlohmann::json& value);
 
-/// Text from the file as part of a message: printable ASCII, cut off after 200 characters.
-std::string text_in_message(const std::string& text);
-
 [[noreturn]] void fail_in_gltf(const std::string& file, const std::string& where, const std::string& found,
                                const std::string& allowed);
 

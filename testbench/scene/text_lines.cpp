@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "testbench/system/error.hpp"
+#include "testbench/system/message_text.hpp"
 
 namespace testbench {
 namespace {
@@ -53,8 +54,7 @@ bool parse_number(std::string_view word, double& value) {
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMost = 100;
-  return text.size() <= kMost ? "'" + std::string(text) + "'"
-                              : "'" + std::string(text.substr(0, kMost)) + "...'";
+  return "'" + shortened(printable(text), kMost) + "'";
 }
 
 std::string_view without_byte_order_mark(std::string_view text) {

@@ -26,7 +26,7 @@ std::string_view without_comment(std::string_view line);
 /// Whether the whole word is a finite decimal number; sets `value` to it. A leading '+' is allowed.
 bool parse_number(std::string_view word, double& value);
 
-/// The text in quotes for an error message, cut after 100 bytes.
+/// The text in quotes for an error message: printable, and shortened to 100 characters.
 std::string in_quotes(std::string_view text);
 
 /// The text without the byte order mark that some editors put in front of UTF-8.

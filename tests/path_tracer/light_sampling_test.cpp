@@ -71,6 +71,23 @@ double lambert(const Setting& s) {
   return 0.5 * std::abs(sum);
 }
 
+/// Of a triangle seen from the origin (Van Oosterom and Strackee 1983), in extended precision. The volume
+/// comes from the edges: of unit vectors that differ in their last digits only, little would be left.
+double solid_angle(const Vector& p, const Vector& q, const Vector& r) {
+  using Long = vec3<long double>;
+  const auto extended = [](const Vector& v) { return Long{v.x, v.y, v.z}; };
+  const auto length_of = [](const Long& v) { return std::sqrt(dot(v, v)); };
+  const Long a = extended(p);
+  const Long b = extended(q);
+  const Long c = extended(r);
+  const long double la = length_of(a);
+  const long double lb = length_of(b);
+  const long double lc = length_of(c);
+  const long double volume = std::abs(dot(a, cross(b - a, c - a))) / (la * lb * lc);
+  return double(
+      2 * std::atan2(volume, 1 + dot(a, b) / (la * lb) + dot(b, c) / (lb * lc) + dot(c, a) / (lc * la)));
+}
+
 double area(const Setting& s) {
   return length(cross(s.edge1, s.edge2)) * (s.shape == LightShape::triangle ? 0.5 : 1.0);
 }
@@ -88,6 +105,37 @@ const std::vector<Setting>& settings() {
       {"triangle, half below the horizon", kTriangle, {-1, 2, -1}, x * 3, z * 3, {0, 0, 0}, {1, 0, 0}},
       {"triangle close by", kTriangle, {-5, 0.05, -5}, x * 20, z * 20, {0, 0, 0}, {0, 1, 0}},
       {"triangle, thin", kTriangle, {-1, 2, 0}, x * 4, z * 1e-3, {0, 0, 0}, unit({0.3, 1, 0})},
+      {"needle across, short side opposite the first corner",
+       kTriangle,
+       {-7, 0.01, 0.003},
+       x * 15,
+       x * 15 + z * 2e-6,
+       {0, 0, 0},
+       {0, 1, 0}},
+      {"needle across, short side at the first corner",
+       kTriangle,
+       {-7, 0.01, 0.003},
+       x * 15,
+       z * 2e-6,
+       {0, 0, 0},
+       {0, 1, 0}},
+      {"needle across, short side is the second edge",
+       kTriangle,
+       {-7, 0.01, 0.003},
+       z * -2e-6,
+       x * 15,
+       {0, 0, 0},
+       unit({0.3, 1, 0})},
+      {"needle across, aspect 1e12", kTriangle, {-3, 1e-3, 1e-5}, x * 7, z * 1e-11, {0, 0, 0}, {0, 1, 0}},
+      {"needle away from the point", kTriangle, {0.5, 0.1, 0}, x * 15, z * 1e-4, {0, 0, 0}, unit({1, 1, 0})},
+      {"needle with its point overhead",
+       kTriangle,
+       {0, 0.2, 0},
+       x * 3,
+       z * 1e-6 + x * 3,
+       {0, 0, 0},
+       {0, 1, 0}},
+      {"triangle, nearly a half-space", kTriangle, {-30, 1, -30}, x * 90, z * 90, {0, 0, 0}, {0, 1, 0}},
       {"triangle, nearly edge on", kTriangle, {3, 2e-3, 0}, x, z, {0, 0, 0}, unit({1, 1, 0})},
       {"triangle, far", kTriangle, {1000, 2000, 500}, x, z, {0, 0, 0}, {0, 1, 0}},
       {"triangle, a large one far away", kTriangle, {1e5, 2e5, 5e4}, x * 1e3, z * 1e3, {0, 0, 0}, {0, 1, 0}},
@@ -206,14 +254,10 @@ TEST_F(LightSamplingTest, AgreesWithAreaSampling) {
 /// 1 / density, averaged over the samples, is the solid angle: the density integrates to 1 over it.
 TEST_F(LightSamplingTest, TheDensityIntegratesToOne) {
   for (const Setting& s : settings()) {
-    double expected = 0;
     const std::vector<Vector> polygon = corners(s);
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-      const Vector a = unit(polygon[0]);
-      const Vector b = unit(polygon[i]);
-      const Vector c = unit(polygon[i + 1]);
-      expected += 2 * std::atan2(std::abs(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
-    }
+    double expected = 0;
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+      expected += solid_angle(polygon[0], polygon[i], polygon[i + 1]);
     double least = 1;
     for (const Vector& corner : polygon) least = std::min(least, dot(unit(corner), s.normal));
     if (least <= 0) continue;  // weights are 0 below the horizon: no density can be read off them
@@ -252,8 +296,10 @@ TEST_F(LightSamplingTest, PointsLieOnTheLight) {
     for (std::size_t i = 0; i < u.size(); ++i) {
       const Vector at = Vector{samples.to_light.x[i], samples.to_light.y[i], samples.to_light.z[i]} -
                         (s.vertex - s.position);
-      const double a = dot(at, s.edge1) / dot(s.edge1, s.edge1);
-      const double b = dot(at, s.edge2) / dot(s.edge2, s.edge2);
+      // Cramer's rule in the lights' plane.
+      const double determinant = s.edge1.x * s.edge2.z - s.edge1.z * s.edge2.x;
+      const double a = (at.x * s.edge2.z - at.z * s.edge2.x) / determinant;
+      const double b = (s.edge1.x * at.z - s.edge1.z * at.x) / determinant;
       ASSERT_TRUE(std::isfinite(samples.weight[i])) << s.name << " " << u[i] << " " << v[i];
       EXPECT_NEAR(at.y, 0.0, 1e-9 * size) << s.name;
       EXPECT_GE(a, -1e-6) << s.name << " " << u[i] << " " << v[i];

@@ -143,6 +143,22 @@ TEST(Furnace, PathsAreWorthEmissionOverOneLessAlbedo) {
   }
 }
 
+TEST(Furnace, WhiteSurfacesKeepTheMeanAndTheVariance) {
+  for (const double albedo : {0.99, 0.999, 0.9999}) {
+    const double emission = 1 - albedo;
+    const std::vector<RadianceRecord> paths =
+        native_paths(closed_cube(albedo, emission, {16, 16}), render_options(Program::segments, 8));
+    double vertices = 0;
+    for (const RadianceRecord& path : paths) {
+      // Roulette at the albedo leaves each weight at 1, so a path is worth its vertices, whatever their number.
+      ASSERT_NEAR(path.radiance.x, std::round(path.radiance.x / emission) * emission, 1e-9 * path.radiance.x);
+      vertices += std::round(path.radiance.x / emission);
+    }
+    EXPECT_GT(vertices_tail_bound(vertices, double(paths.size()), 1 - albedo), test_support::per_test(2 * 3))
+        << "albedo " << albedo << ": mean " << vertices * emission / double(paths.size()) << ", expected is 1";
+  }
+}
+
 TEST(Furnace, RouletteBelowTheAlbedoKeepsTheMean) {
   RenderOptions options = render_options(Program::segments, 64);
   options.program.max_survival = 0.4;

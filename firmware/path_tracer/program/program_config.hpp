@@ -58,7 +58,9 @@ struct ProgramConfig {
   int bin_blocks = 8;            ///< length of each bin in blocks of one SIMD width
   int slot_vertices = 16;        ///< vertices a path slot holds; a multiple of kVerticesPerLoad
   int roulette_start = 0;        ///< segments a path lives without roulette
-  double max_survival = 0.95;    ///< below 1, so that paths between white surfaces end
+  /// Below 1, so that paths between white surfaces end. Where it is below an albedo, weights grow from bounce
+  /// to bounce by albedo / max_survival; above the albedo's square, their variance stays finite.
+  double max_survival = 0.999999;
   bool cull_shadow_rays = true;  ///< leave out those whose surface or light faces away
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;

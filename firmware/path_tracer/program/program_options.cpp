@@ -133,7 +133,7 @@ Options sampling() {
               "points of a light: uniform in its area, or in the solid angle that it subtends"),
           integer<&ProgramConfig::roulette_start>("roulette_start", "segments", 3, {0, kMaxSegments},
                                                   "segments that a path lives without Russian roulette"),
-          real<&ProgramConfig::max_survival>("max_survival", "-", 0.95, {0, 1},
+          real<&ProgramConfig::max_survival>("max_survival", "-", 0.999999, {0, 1},
                                              "largest probability with which roulette lets a path go on"),
           {"seed", "-", std::uint64_t{1}, Unsigned64{}, "seed of the random numbers",
            &Field<&ProgramConfig::seed>::read_as_held, &Field<&ProgramConfig::seed>::write_as_held}};

@@ -88,8 +88,8 @@ inline LightSample sample_light_area(const LightSurface& light, const Point3& po
   return weigh_by_area(on_light - position, light.normal, normal);
 }
 
-/// Smallest solid angle to sample. Below it rounding would show, and a point uniform in area is as good: the
-/// light is small for its distance, or seen edge on.
+/// Smallest solid angle of a rectangle to sample. Below it rounding would show, and a point uniform in area
+/// is as good: the light is small for its distance, or seen edge on.
 inline constexpr double kLeastSolidAngle = 1e-6;
 
 /// Keeps quotients and roots finite whose argument rounding may take to zero or below.
@@ -216,62 +216,117 @@ inline SolidAngleSample sample_rectangle(const LightSurface& light, const Rectan
           view.solid_angle, warped.inverse_pdf};
 }
 
-/// Unit vectors to a triangle's corners, counterclockwise as seen from its front.
+/// A triangle as seen from a point in front of it: unit vectors to its corners, counterclockwise as seen from
+/// its front.
+///
+/// Needles and distant lights have corners whose directions differ in their last digits only, and seen from
+/// close by, a long side spans nearly half a turn. So no cosine stands for an angle here: chords do, which
+/// are computed from the light's edges, where nothing cancels. What is left is a relative error of the solid
+/// angle of about e (length / z)^2, with e = 2^-53, for a light seen from a distance z close to its long
+/// side.
 struct TriangleView {
   Direction3 a, b, c;
-  poly<double> volume;  ///< a . (b x c), positive in front of it
+  poly<double> inverse_length_a, inverse_length_b, inverse_length_c;  ///< of the vectors to the corners
+  Direction3 chord_ac;                                                ///< c - a
+  poly<double> volume;           ///< a . (b x c), positive in front of it
+  poly<double> one_plus_cosine;  ///< 1 + a . b
+  poly<double> lean;             ///< (a + b) . (c - a)
   poly<double> solid_angle;
 };
 
-inline Direction3 unit(const Direction3& v) {
-  return v * (1.0 / cn::sqrt(at_least_tiny(dot(v, v))));
+inline poly<double> inverse_length(const Direction3& v) {
+  return 1.0 / cn::sqrt(cn::max(dot(v, v), poly<double>(kNotZero)));
 }
 
 /// Solid angle after Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983.
-inline TriangleView view_triangle(const LightSurface& light, const Direction3& to_vertex) {
-  const Direction3 a = unit(to_vertex);
-  const Direction3 b = unit(to_vertex + light.edge2);
-  const Direction3 c = unit(to_vertex + light.edge1);
-  const poly<double> volume = dot(a, cross(b, c));
-  return {a, b, c, volume, 2.0 * cn::atan2(volume, 1.0 + dot(a, b) + dot(b, c) + dot(c, a))};
+/// @param z distance from the light's plane
+inline TriangleView view_triangle(const LightSurface& light, const Direction3& to_vertex,
+                                  const poly<double>& z) {
+  TriangleView view;
+  const Direction3 to_b = to_vertex + light.edge2;
+  const Direction3 to_c = to_vertex + light.edge1;
+  view.inverse_length_a.assign_all_lanes(inverse_length(to_vertex));
+  view.inverse_length_b.assign_all_lanes(inverse_length(to_b));
+  view.inverse_length_c.assign_all_lanes(inverse_length(to_c));
+  view.a = to_vertex * view.inverse_length_a;
+  view.b = to_b * view.inverse_length_b;
+  view.c = to_c * view.inverse_length_c;
+  // |c'| / |a'| - 1 of the vectors a', c' to the corners: (c'^2 - a'^2) / (a'^2 + |a'| |c'|).
+  const poly<double> length_a = dot(to_vertex, view.a);
+  const poly<double> length_c = dot(to_c, view.c);
+  const poly<double> longer = dot(light.edge1, to_vertex + to_c) / (length_a * (length_a + length_c));
+  view.chord_ac = (light.edge1 - to_vertex * longer) * view.inverse_length_c;
+  const poly<double> twice_area = dot(cross(light.edge1, light.edge2), light.normal);
+  view.volume.assign_all_lanes((z * view.inverse_length_a) *
+                               (twice_area * (view.inverse_length_b * view.inverse_length_c)));
+  const Direction3 sum = view.a + view.b;
+  view.one_plus_cosine.assign_all_lanes(0.5 * dot(sum, sum));
+  view.lean.assign_all_lanes(dot(sum, view.chord_ac));
+  view.solid_angle.assign_all_lanes(2.0 * cn::atan2(view.volume, 2.0 * view.one_plus_cosine + view.lean));
+  return view;
 }
 
-/// Returns the point on the great circle from `from` towards `to` at the given cosine from `from`.
-inline Direction3 on_arc(const Direction3& from, const Direction3& to, const poly<double>& cosine) {
-  const Direction3 across = unit(to - from * dot(from, to));
-  return from * cosine + across * cn::sqrt(cn::max(1.0 - cosine * cosine, poly<double>(0.0)));
+/// Returns the share w of the chord from a to c at which the triangle (a, b, a + w (c - a)) has the share u
+/// of the solid angle. It solves Van Oosterom's and Strackee's equation for w: with t = tan(u S / 2), k = 1 +
+/// a.b, e = (a + b).(c - a) and d = |c - a|, the square root |a + w (c - a)| in it leaves a linear equation,
+/// w ((V - t e)^2 - (t k d)^2) = t k (2 (V - t e) - t k d^2). Here both sides are times cos^2(u S / 2).
+inline poly<double> share_of_chord(const TriangleView& view, const poly<double>& u) {
+  const cn::SineCosine part = cn::sincos(0.5 * u * view.solid_angle);
+  const poly<double> chord_squared = dot(view.chord_ac, view.chord_ac);
+  const poly<double> rest = view.volume * part.cosine - part.sine * view.lean;
+  const poly<double> sine_k = part.sine * view.one_plus_cosine;
+  const poly<double> denominator = rest * rest - sine_k * sine_k * chord_squared;
+  const poly<double> numerator = sine_k * (2.0 * rest - sine_k * chord_squared);
+  const poly<double> w = numerator / cn::max(denominator, poly<double>(kNotZero));
+  return cn::min(cn::max(w, poly<double>(0.0)), poly<double>(1.0));
+}
+
+/// Returns the share of the chord between two unit vectors at which the arc reaches the cosine 1 - v (1 -
+/// their cosine). Sines of half angles are half chords: the arc's is s, that of its part s sqrt(v).
+/// @param half_chord_squared s^2
+/// @param rest 1 - s^2
+inline poly<double> share_of_arc(const poly<double>& half_chord_squared, const poly<double>& rest,
+                                 const poly<double>& v) {
+  const poly<double> root = cn::sqrt(v);
+  const poly<double> part = v * half_chord_squared;
+  const poly<double> sine_there = root * cn::sqrt(cn::max(1.0 - part, poly<double>(0.0)));
+  const poly<double> sine_left =
+      cn::sqrt(rest) * (1.0 - 2.0 * part) - (1.0 - 2.0 * half_chord_squared) * sine_there;
+  const poly<double> left = cn::max(sine_left, poly<double>(0.0));
+  return sine_there / at_least_tiny(left + sine_there);
 }
 
 /// Samples uniformly in solid angle (Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995),
 /// warped to the cosine: c moves along its side until the triangle has the share u of its solid angle, then v
-/// chooses between b and the moved point. Only the sine and the cosine of the angle at `a` are needed.
-inline SolidAngleSample sample_spherical_triangle(const TriangleView& view, const Direction3& light_normal,
-                                                  const poly<double>& z, const Direction3& normal,
+/// chooses between b and the moved point. The result is a mean of the corners with positive weights, so
+/// rounding takes it out of the light by no more than its own.
+inline SolidAngleSample sample_spherical_triangle(const LightSurface& light, const TriangleView& view,
+                                                  const Direction3& to_vertex, const Direction3& normal,
                                                   const poly<double>& u, const poly<double>& v) {
   const poly<double> corner_a = corner_value(dot(view.a, normal));
   const poly<double> corner_b = corner_value(dot(view.b, normal));
   const poly<double> corner_c = corner_value(dot(view.c, normal));
   const SquareSample warped = sample_bilinear({corner_b, corner_b, corner_a, corner_c}, u, v);
 
-  const Direction3 ab = cross(view.a, view.b);
-  const Direction3 ac = cross(view.a, view.c);
-  const poly<double> scale = 1.0 / cn::sqrt(at_least_tiny(dot(ab, ab) * dot(ac, ac)));
-  const poly<double> cosine_a = dot(ab, ac) * scale;
-  const poly<double> sine_a = view.volume * scale;
-  const cn::SineCosine part = cn::sincos(warped.u * view.solid_angle);
-  const poly<double> s = part.sine * cosine_a - part.cosine * sine_a;
-  const poly<double> t = part.cosine * cosine_a + part.sine * sine_a;
-  const poly<double> p = t - cosine_a;
-  const poly<double> q = s + sine_a * dot(view.a, view.b);
-  const poly<double> cosine_side = ((q * t - p * s) * cosine_a - q) / ((q * s + p * t) * sine_a);
-  const poly<double> within = cn::min(cn::max(cosine_side, poly<double>(-1.0)), poly<double>(1.0));
-  const Direction3 moved = on_arc(view.a, view.c, within);
-  const Direction3 direction = on_arc(view.b, moved, 1.0 - warped.v * (1.0 - dot(moved, view.b)));
-  const poly<double> distance = z / at_least_tiny(-dot(direction, light_normal));
-  return {direction * distance, view.solid_angle, warped.inverse_pdf};
+  const poly<double> w = share_of_chord(view, warped.u);
+  const Direction3 moved = view.a + view.chord_ac * w;
+  const poly<double> inverse_moved = inverse_length(moved);
+  const Direction3 moved_unit = moved * inverse_moved;
+  const Direction3 chord = moved_unit - view.b;
+  const Direction3 sum = moved_unit + view.b;
+  const poly<double> towards = share_of_arc(0.25 * dot(chord, chord), 0.25 * dot(sum, sum), warped.v);
+
+  const poly<double> scale = towards * inverse_moved;
+  const poly<double> at_a = (1.0 - w) * view.inverse_length_a * scale;
+  const poly<double> at_b = (1.0 - towards) * view.inverse_length_b;
+  const poly<double> at_c = w * view.inverse_length_c * scale;
+  const poly<double> inverse_sum = 1.0 / (at_a + at_b + at_c);
+  return {to_vertex + light.edge2 * (at_b * inverse_sum) + light.edge1 * (at_c * inverse_sum),
+          view.solid_angle, warped.inverse_pdf};
 }
 
-/// Samples uniformly in solid angle, warped to the cosine; uniformly in area if the solid angle is too small.
+/// Samples uniformly in solid angle, warped to the cosine; a rectangle of too small a solid angle uniformly
+/// in area.
 inline LightSample sample_light_solid_angle(const LightSurface& light, const poly<std::int32_t>& shape,
                                             const Point3& position, const Direction3& normal,
                                             const poly<double>& u, const poly<double>& v) {
@@ -293,9 +348,9 @@ inline LightSample sample_light_solid_angle(const LightSurface& light, const pol
     });
   });
   cn::poly_if_any(!is_rectangle, [&] {
-    const TriangleView view = view_triangle(light, to_vertex);
-    cn::poly_if((z > 0.0) & (view.solid_angle > kLeastSolidAngle), [&] {
-      take(weigh_by_solid_angle(sample_spherical_triangle(view, light.normal, z, normal, u, v), normal,
+    const TriangleView view = view_triangle(light, to_vertex, z);
+    cn::poly_if((z > 0.0) & (view.solid_angle > kNotZero), [&] {
+      take(weigh_by_solid_angle(sample_spherical_triangle(light, view, to_vertex, normal, u, v), normal,
                                 0.5 * dot(cross(light.edge1, light.edge2), light.normal)));
     });
   });

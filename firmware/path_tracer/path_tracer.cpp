@@ -12,13 +12,13 @@ namespace {
 constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config) {
-  return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config.program), PathStage::kLoadBytes,
+  return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
                    config.uses_tree() ? TreeStage::load_bytes(config.tree) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  return std::max({RayStage::kSaveBytes, IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
-                   config.uses_tree() ? TreeStage::kSaveBytes : 0});
+  return std::max({RayStage::save_bytes(config), IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
+                   config.uses_tree() ? TreeStage::save_bytes(config) : 0});
 }
 
 const ProgramConfig& valid(const ProgramConfig& config) {

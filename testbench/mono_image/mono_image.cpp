@@ -250,7 +250,8 @@ void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::i
     const Triangle& triangle = scene.triangles[i];
     const SurfaceRecord record =
         surface_record(triangle, scene.materials[std::size_t(triangle.material)], faces[i]);
-    put(image, image.layout.surfaces + i, &record, 1);
+    const std::uint64_t place = i * std::uint64_t(image.layout.sizes.surface);
+    std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
   }
 }
 

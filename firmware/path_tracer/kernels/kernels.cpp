@@ -25,8 +25,8 @@ void intersect(const IntersectArguments& arguments) {
   Nearest nearest;
   search_by(PrefilteredSearch{arguments.prefilter}, ray, arguments.reach,
             MonoTriangles{arguments.triangles, arguments.triangle_count}, nearest);
-  write_hit(nearest, ray.origin, ray.direction, arguments.hit);
-  arguments.surface_place.write(place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord)));
+  write_hit(nearest, ray.origin, ray.direction, arguments.hit, arguments.hit_has_tail);
+  arguments.surface_place.write(place_of(arguments.surfaces, nearest.number));
   cn::keep(nearest.number >= 0, *arguments.hit_something);
 }
 
@@ -100,6 +100,9 @@ void scatter(const ScatterArguments& arguments) {
   if (arguments.casts_shadow_rays) aim(arguments, surface, reflects);
 }
 
+void shade(const ShadeArguments& arguments) { scatter(arguments); }
+constexpr double kInfinity = 1e300;
+
 void illuminate(const IlluminateArguments& arguments) {
   const mask sees =
       (arguments.hit.get(&HitRecord::hit) != 0) &
@@ -150,6 +153,8 @@ void start_path(const ContinuePathsArguments& arguments, const poly<std::int32_t
   arguments.next_path.set(&PathRecord::depth, poly<std::int32_t>(0));
   arguments.next_path.set(&PathRecord::vertices, poly<std::int32_t>(0));
   arguments.next_path.set(&PathRecord::folded, poly<std::int32_t>(0));
+  if (arguments.path_has_tail)
+    tail<DirectionRecord>(arguments.next_path).set(&DirectionRecord::pdf, poly<double>(kInfinity));
 }
 
 void continue_path(const ContinuePathsArguments& arguments) {
@@ -165,6 +170,10 @@ void continue_path(const ContinuePathsArguments& arguments) {
   arguments.next_path.set(&PathRecord::vertices, cn::select(flushed, poly<std::int32_t>(0), vertices));
   const poly<std::int32_t> folded = arguments.path.get(&PathRecord::folded);
   arguments.next_path.set(&PathRecord::folded, cn::select(flushed, poly<std::int32_t>(1), folded));
+  if (arguments.path_has_tail)
+    tail<DirectionRecord>(arguments.next_path)
+        .set(&DirectionRecord::pdf,
+             tail<DirectionRecord>(arguments.scatter).get(&DirectionRecord::pdf));
 }
 
 /// Chooses the light for the shadow ray of the vertex that the new ray will find. It is chosen this early
@@ -266,6 +275,7 @@ const Kernels& PATH_TRACER_KERNELS() {
   static constexpr Kernels table{
       cn::kernel<IntersectArguments, intersect>("intersect"),
       cn::kernel<ScatterArguments, scatter>("scatter"),
+      cn::kernel<ShadeArguments, shade>("shade"),
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),
       cn::kernel<ContinuePathsArguments, continue_paths>("continue_paths"),

@@ -5,6 +5,7 @@
 #include "firmware/path_tracer/kernels/traversal_kernels.hpp"
 #include "firmware/path_tracer/prefilter/prefilter.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
+#include "firmware/path_tracer/records/tails.hpp"
 
 /// The poly programs of the path tracer: their arguments and the table of entry points. Poly pointers point
 /// to SRAM, plain pointers to mono memory that the control unit reads, `LaneMask*` to conditions that a
@@ -18,7 +19,8 @@ struct IntersectArguments {
   int triangle_count = 0;
   const Prefilter* prefilter = nullptr;  ///< the simulator's, of those triangles; nullptr to test each
   double reach = 0;                      ///< of the scene (triangle_record.hpp)
-  MonoAddress surfaces = 0;
+  MonoRecords surfaces;
+  bool hit_has_tail = false;  ///< ArrivalRecord
   PolyPointer<HitRecord> hit;
   PolyField<MonoAddress> surface_place;  ///< kept for the intersection stage's gather
   LaneMask* hit_something = nullptr;
@@ -42,6 +44,14 @@ struct ScatterArguments {
   PolyPointer<RayRecord> shadow_ray;
   PolyPointer<LightingRecord> lighting;
   LaneMask* casts = nullptr;  ///< the slot's next ray is the shadow ray
+};
+
+/// ScatterArguments for scenes that are not plain (records/features.hpp).
+struct ShadeArguments : ScatterArguments {
+  Features features;
+  RecordSizes sizes{Features{}};
+  Estimator estimator = Estimator::per_lobe;
+  vec3<double> environment{};  ///< radiance from outside
 };
 
 /// Intersection stage, shadow rays: direct light if the ray hit its light.
@@ -92,6 +102,7 @@ struct ContinuePathsArguments {
   CameraRayOrder camera_rays;
   std::int32_t remaining = 0;  ///< camera rays to generate, at most the number of PEs
   PolyPointer<PathRecord> next_path;
+  bool path_has_tail = false;  ///< DirectionRecord, as `path` and `scatter`
   PolyPointer<RayRecord> ray;
   /// Place of the light for the next vertex, kept for the intersection stage's gather.
   PolyField<MonoAddress> light_place;
@@ -146,6 +157,7 @@ struct PacketKernels;
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
   cn::Kernel<ScatterArguments> scatter;
+  cn::Kernel<ShadeArguments> shade;
   cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;
   cn::Kernel<ContinuePathsArguments> continue_paths;

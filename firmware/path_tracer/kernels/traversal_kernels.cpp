@@ -108,11 +108,11 @@ void finish(const FinishArguments& arguments) {
   nearest.determinant.assign_all_lanes(record.get(&TraversalRecord::determinant));
   nearest.number.assign_all_lanes(record.get(&TraversalRecord::number));
   write_hit(nearest, record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction),
-            arguments.hit);
-  const poly<MonoAddress> place = place_of(arguments.surfaces, nearest.number, sizeof(SurfaceRecord));
+            arguments.hit, arguments.hit_has_tail);
+  const poly<MonoAddress> place = place_of(arguments.surfaces, nearest.number);
   arguments.surface_place.write(cn::select(nearest.number >= 0, place, poly<MonoAddress>(0u)));
   const poly<std::int32_t> slot = record.get(&TraversalRecord::slot);
-  arguments.hit_to.write(place_of(arguments.hits, slot, sizeof(HitRecord)));
+  arguments.hit_to.write(place_of(arguments.hits, slot));
   arguments.surface_place_to.write(place_of(arguments.surface_places, slot, sizeof(MonoAddress)));
 }
 

@@ -15,6 +15,12 @@ using cn::MonoAddress;
 using cn::PolyField;
 using cn::PolyPointer;
 
+/// An array of records with tails (records/tails.hpp) in mono memory.
+struct MonoRecords {
+  MonoAddress first = 0;
+  int record_bytes = 0;
+};
+
 /// The part of the tree in the PEs' SRAM.
 struct TreeInSram {
   TreeShape shape;
@@ -77,8 +83,9 @@ struct TraverseArguments {
 /// Writes the hit of each finished ray, and where it is saved.
 struct FinishArguments {
   PolyPointer<TraversalRecord> record;
-  MonoAddress surfaces = 0;
-  MonoAddress hits = 0;            ///< intersection bin
+  MonoRecords surfaces;
+  MonoRecords hits;           ///< intersection bin
+  bool hit_has_tail = false;  ///< ArrivalRecord
   MonoAddress surface_places = 0;  ///< bin
   PolyPointer<HitRecord> hit;
   PolyField<MonoAddress> surface_place;

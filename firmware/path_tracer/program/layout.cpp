@@ -19,11 +19,13 @@ class MonoAllocator {
  public:
   explicit MonoAllocator(std::vector<Layout::Region>& regions) : regions_(regions) {}
 
+  /// @param record_bytes of a record, with its tail
   template <class T>
-  cn::MonoPointer<T> take(const char* name, std::uint64_t count) {
+  cn::MonoPointer<T> take(const char* name, std::uint64_t count, int record_bytes = sizeof(T)) {
     const cn::MonoPointer<T> start{next_};
-    regions_.push_back({name, next_, count * sizeof(T)});
-    next_ = (next_ + count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
+    const std::uint64_t bytes = count * std::uint64_t(record_bytes);
+    regions_.push_back({name, next_, bytes});
+    next_ = (next_ + bytes + kAlignment - 1) / kAlignment * kAlignment;
     return start;
   }
   std::uint64_t used_bytes() const { return next_; }
@@ -60,6 +62,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   const TreeShape& tree = config.tree;
   Layout layout;
   MonoAllocator memory(layout.regions);
+  layout.sizes = RecordSizes(config.features);
   layout.triangle_count = scene.triangles;
   layout.light_count = scene.lights;
   layout.tree_slots = scene.tree_slots;
@@ -68,7 +71,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
   layout.triangles =
       memory.take<TriangleRecord>("triangles", std::uint64_t(scene.triangles + behind_triangles));
-  layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles));
+  layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles), layout.sizes.surface);
   layout.lights = memory.take<LightRecord>("lights", std::uint64_t(scene.lights));
   layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(scene.lights));
   if (config.uses_tree())
@@ -88,12 +91,12 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
     layout.treelet_pool_blocks = treelet_pool_blocks(scene, num_pes, config);
     take_treelet_pool(layout, memory, num_pes, config);
   }
-  layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots);
+  layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
   if (config.uses_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
-  layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots);
+  layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
   layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots);
   layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);
-  layout.path_bin = memory.take<PathRecord>("path bin", slots);
+  layout.path_bin = memory.take<PathRecord>("path bin", slots, layout.sizes.path);
   layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
   layout.folds = memory.take<FoldRecord>("folds", slots);
   layout.finished = memory.take<FinishedRecord>("finished paths", slots);

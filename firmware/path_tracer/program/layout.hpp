@@ -5,7 +5,7 @@
 
 #include "firmware/cn/chip/mono_memory.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
-#include "firmware/path_tracer/records/records.hpp"
+#include "firmware/path_tracer/records/tails.hpp"
 
 namespace path_tracer {
 
@@ -30,7 +30,9 @@ struct Layout {
   int light_count = 0;
   int tree_slots = 0;
   int treelet_pool_blocks = 0;
-  double reach = 0;  ///< no ray starts farther from a vertex (triangle_record.hpp)
+  RecordSizes sizes{Features{}};  ///< of records with tails: surfaces, intersection_bin, scatter_bin, path_bin
+  vec3<double> environment{};     ///< radiance that arrives from outside the scene
+  double reach = 0;               ///< no ray starts farther from a vertex (triangle_record.hpp)
 
   // Bins: one record for each slot, slot_vertices for `vertices`.
   cn::MonoPointer<RayRecord> ray_bin;    ///< of brute force

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "firmware/path_tracer/records/features.hpp"
 #include "firmware/path_tracer/records/traversal_record.hpp"
 
 /// The firmware's options and their ranges.
@@ -27,6 +28,13 @@ enum class LightSampling : std::uint8_t {
   solid_angle,  ///< uniform in the solid angle it takes, warped to the cosine at the lit surface
 };
 
+/// How the light of emitting triangles reaches a path in the programs with shadow rays.
+enum class Estimator : std::uint8_t {
+  light,     ///< by shadow rays; by hits only where no shadow ray can, behind mirrors and glass
+  mis,       ///< by both, weighed against each other (Veach and Guibas, SIGGRAPH 1995; power heuristic)
+  per_lobe,  ///< diffuse surfaces by shadow rays, glossy ones by both
+};
+
 /// How a ray finds the triangles that it may hit.
 enum class Traversal : std::uint8_t {
   brute_force,  ///< by a test of every triangle
@@ -49,8 +57,9 @@ inline constexpr int kMaxSlotVertices = 4096;
 /// Vertices of a path that one step of the radiance stage loads.
 inline constexpr int kVerticesPerLoad = 4;
 
-/// How the firmware is built and run; independent of the scene.
+/// How the firmware is built and run.
 struct ProgramConfig {
+  Features features;  ///< of the scene
   Program program = Program::full;
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
@@ -64,6 +73,7 @@ struct ProgramConfig {
   bool cull_shadow_rays = true;  ///< leave out those whose surface or light faces away
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
+  Estimator estimator = Estimator::per_lobe;
   std::uint64_t seed = 1;
   /// Pixels from one camera ray to the next, cyclic over the film; must have no common divisor with the
   /// number of pixels. The image is the same; only the distance between rays of one block changes.
@@ -72,7 +82,7 @@ struct ProgramConfig {
   TreeShape tree;
 
   bool uses_tree() const { return traversal != Traversal::brute_force; }
-  bool casts_shadow_rays() const { return program != Program::segments; }
+  bool casts_shadow_rays() const { return program != Program::segments && features.lights; }
   bool buffers_loads() const { return buffer_loads && n > 0; }
   bool buffers_saves() const { return buffer_saves && n > 0; }
   int load_buffers() const { return buffers_loads() ? n + 1 : 1; }

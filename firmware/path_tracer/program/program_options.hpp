@@ -18,6 +18,7 @@ namespace path_tracer {
 inline constexpr std::array kProgramNames = {"segments", "direct", "full"};
 inline constexpr std::array kSamplerNames = {"philox", "sobol"};
 inline constexpr std::array kLightSamplingNames = {"area", "solid_angle"};
+inline constexpr std::array kEstimatorNames = {"light", "mis", "per_lobe"};
 inline constexpr std::array kTraversalNames = {"brute_force", "temporary_bin", "refill",
                                                "lock_step",   "packets",       "shared_treelets"};
 inline constexpr std::array kNodeFormatNames = {"fp64", "fp32", "quantised8"};
@@ -30,6 +31,9 @@ inline const char* name_of(Sampler sampler) {
 }
 inline const char* name_of(LightSampling sampling) {
   return kLightSamplingNames.at(std::size_t(sampling));
+}
+inline const char* name_of(Estimator estimator) {
+  return kEstimatorNames.at(std::size_t(estimator));
 }
 inline const char* name_of(Traversal traversal) {
   return kTraversalNames.at(std::size_t(traversal));

@@ -7,7 +7,7 @@
 namespace path_tracer {
 
 /// The use of a group of four random numbers. It is part of the counter, so that uses never share numbers.
-enum class Purpose : std::uint32_t { camera, scatter, light };
+enum class Purpose : std::uint32_t { camera, scatter, light, lobe };
 
 /// Four uniform numbers in (0, 1).
 struct Uniform4 {

@@ -32,6 +32,14 @@ inline ScatterNumbers scatter_numbers(Sampler sampler, std::uint64_t seed,
   return {{random.value[0], random.value[1]}, random.value[2]};
 }
 
+/// Returns the number that chooses among a surface's lobes.
+inline cn::poly<double> lobe_number(Sampler sampler, std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
+                                    const cn::poly<std::int32_t>& sample,
+                                    const cn::poly<std::int32_t>& depth) {
+  if (sampler == Sampler::sobol) return sobol_single(sobol_point(seed, pixel, sample, depth, Purpose::lobe));
+  return uniform4(seed, pixel, sample, depth, Purpose::lobe).value[0];
+}
+
 /// A light, and a position on it.
 struct LightNumbers {
   cn::poly<std::int32_t> light;

@@ -15,6 +15,13 @@ class BufferCutter {
     offset_bytes_ += count * PolyPointer<Record>::size_bytes();
     return start;
   }
+  /// @param record_bytes of the record and its tail
+  template <class Record>
+  PolyPointer<Record> take_with_tail(int record_bytes) {
+    const PolyPointer<Record> start(offset_bytes_);
+    offset_bytes_ += record_bytes;
+    return start;
+  }
   template <class T>
   PolyField<T> take_field() {
     const PolyField<T> field{offset_bytes_};

@@ -4,13 +4,14 @@
 
 namespace path_tracer {
 
-int IntersectionStage::load_bytes(Program program) {
-  const int bytes = sizeof(HitRecord) + sizeof(SurfaceRecord) + sizeof(PathRecord);
-  return program == Program::segments ? bytes : bytes + int{sizeof(LightRecord)};
+int IntersectionStage::load_bytes(const ProgramConfig& config) {
+  const RecordSizes sizes(config.features);
+  const int bytes = sizes.hit + sizes.surface + sizes.path;
+  return config.casts_shadow_rays() ? bytes + int{sizeof(LightRecord)} : bytes;
 }
 
 int IntersectionStage::save_bytes(const ProgramConfig& config) {
-  const int bytes = sizeof(ScatterRecord);
+  const int bytes = RecordSizes(config.features).scatter;
   return config.casts_shadow_rays() ? bytes + int{sizeof(LightingRecord)} + RayStore::room_bytes(config)
                                     : bytes;
 }
@@ -18,10 +19,11 @@ int IntersectionStage::save_bytes(const ProgramConfig& config) {
 IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
   Loads loads;
-  loads.hit = cutter.take<HitRecord>();
-  loads.surface = cutter.take<SurfaceRecord>();
+  const RecordSizes& sizes = context_.layout.sizes;
+  loads.hit = cutter.take_with_tail<HitRecord>(sizes.hit);
+  loads.surface = cutter.take_with_tail<SurfaceRecord>(sizes.surface);
   BufferCutter same_place(cutter);
-  loads.path = cutter.take<PathRecord>();
+  loads.path = cutter.take_with_tail<PathRecord>(sizes.path);
   loads.light = cutter.take<LightRecord>();
   loads.lighting = same_place.take<LightingRecord>();
   return loads;
@@ -31,7 +33,7 @@ IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
   BufferCutter same_place(cutter);
   Saves saves;
-  saves.scatter = cutter.take<ScatterRecord>();
+  saves.scatter = cutter.take_with_tail<ScatterRecord>(context_.layout.sizes.scatter);
   saves.lighting = cutter.take<LightingRecord>();
   saves.shadow_ray = rays_.take_room(cutter);
   saves.direct_light = same_place.take<DirectLightRecord>();
@@ -43,10 +45,11 @@ void IntersectionStage::load(std::uint64_t step, int block) {
   const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
   const LaneMask segments = bin.segments();
-  load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live);
-  context_.loads.copy_m2p(step, block, to.surface.span(), context_.machine.places_in(bin.surface_place),
+  const RecordSizes& sizes = context_.layout.sizes;
+  load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live, sizes.hit);
+  context_.loads.copy_m2p(step, block, with_tail(to.surface, sizes.surface), context_.machine.places_in(bin.surface_place),
                           bin.hit_something);
-  load_block(step, block, to.path, context_.layout.path_bin, segments);
+  load_block(step, block, to.path, context_.layout.path_bin, segments, sizes.path);
   if (!context_.config.casts_shadow_rays()) return;
   context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),
                           segments);
@@ -79,7 +82,21 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   arguments.shadow_ray = to.shadow_ray.ray;
   arguments.lighting = to.lighting;
   arguments.casts = &bin.casts;
-  context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
+  if (context_.config.features.plain()) {
+    context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
+  } else {
+    shade(arguments, bin.segments());
+  }
+}
+
+void IntersectionStage::shade(const ScatterArguments& arguments, const LaneMask& segments) {
+  ShadeArguments shading;
+  static_cast<ScatterArguments&>(shading) = arguments;
+  shading.features = context_.config.features;
+  shading.sizes = context_.layout.sizes;
+  shading.estimator = context_.config.estimator;
+  shading.environment = context_.layout.environment;
+  context_.machine.run(context_.kernels.shade, shading, segments);
 }
 
 void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block) {
@@ -94,7 +111,8 @@ void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block
 void IntersectionStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   const Bins::Block& bin = bin_block(block);
-  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.segments());
+  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.segments(),
+             context_.layout.sizes.scatter);
   if (!context_.config.casts_shadow_rays()) return;
   rays_.save(context_.saves, step, block, from.shadow_ray, bin.light_place, bin.casts);
   save_block(step, block, context_.layout.lighting_bin, from.lighting, bin.casts);

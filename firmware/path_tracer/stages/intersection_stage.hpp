@@ -14,7 +14,7 @@ class IntersectionStage : public Stage {
  public:
   /// @param rays where shadow rays go
   IntersectionStage(const StageContext& context, RayStore& rays) : Stage(context), rays_(rays) {}
-  static int load_bytes(Program program);
+  static int load_bytes(const ProgramConfig& config);
   static int save_bytes(const ProgramConfig& config);
 
   const char* name() const override { return "intersection stage"; }
@@ -39,6 +39,7 @@ class IntersectionStage : public Stage {
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;
   void scatter(const Loads& from, const Saves& to, int block);
+  void shade(const ScatterArguments& arguments, const LaneMask& segments);
   void illuminate(const Loads& from, const Saves& to, int block);
 
   RayStore& rays_;

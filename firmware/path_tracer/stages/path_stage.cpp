@@ -25,13 +25,19 @@ PathStage::PathStage(const StageContext& context, RayStore& rays, const Work& wo
 
 PathStage::Loads PathStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
-  return {cutter.take<PathRecord>(), cutter.take<ScatterRecord>(), cutter.take<DirectLightRecord>()};
+  const RecordSizes& sizes = context_.layout.sizes;
+  return {cutter.take_with_tail<PathRecord>(sizes.path), cutter.take_with_tail<ScatterRecord>(sizes.scatter),
+          cutter.take<DirectLightRecord>()};
 }
 
 PathStage::Saves PathStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  return {cutter.take<VertexRecord>(), cutter.take<PathRecord>(), cutter.take<FinishedRecord>(),
-          cutter.take_place(),         cutter.take_place(),       rays_.take_room(cutter)};
+  return {cutter.take<VertexRecord>(),
+          cutter.take_with_tail<PathRecord>(context_.layout.sizes.path),
+          cutter.take<FinishedRecord>(),
+          cutter.take_place(),
+          cutter.take_place(),
+          rays_.take_room(cutter)};
 }
 
 void PathStage::load(std::uint64_t step, int block) {
@@ -39,8 +45,9 @@ void PathStage::load(std::uint64_t step, int block) {
   const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
   const LaneMask ready = bin.ready();
-  load_block(step, block, to.path, context_.layout.path_bin, ready);
-  load_block(step, block, to.scatter, context_.layout.scatter_bin, ready);
+  const RecordSizes& sizes = context_.layout.sizes;
+  load_block(step, block, to.path, context_.layout.path_bin, ready, sizes.path);
+  load_block(step, block, to.scatter, context_.layout.scatter_bin, ready, sizes.scatter);
   if (context_.config.casts_shadow_rays())
     load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.shadow);
 }
@@ -135,6 +142,7 @@ void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
                            context_.config.pixel_stride % camera_rays_.pixels()};
   arguments.remaining = started;
   arguments.next_path = to.path;
+  arguments.path_has_tail = context_.layout.sizes.path_has_tail();
   arguments.ray = to.ray.ray;
   arguments.live = &continued_;
   context_.machine.run(context_.kernels.continue_paths, arguments, appended_);
@@ -160,7 +168,7 @@ void PathStage::save(std::uint64_t step, int block) {
     context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place),
                             from.finished.span(), finished_);
   }
-  save_block(step, block, context_.layout.path_bin, from.path, continued_);
+  save_block(step, block, context_.layout.path_bin, from.path, continued_, context_.layout.sizes.path);
   rays_.save(context_.saves, step, block, from.ray, bin_block(block).light_place, continued_);
 }
 

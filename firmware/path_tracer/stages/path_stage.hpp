@@ -15,10 +15,13 @@ class PathStage : public Stage {
  public:
   /// @param rays where camera rays and segments go
   PathStage(const StageContext& context, RayStore& rays, const Work& work);
-  static constexpr int kLoadBytes = sizeof(PathRecord) + sizeof(ScatterRecord) + sizeof(DirectLightRecord);
+  static int load_bytes(const ProgramConfig& config) {
+    const RecordSizes sizes(config.features);
+    return sizes.path + sizes.scatter + int{sizeof(DirectLightRecord)};
+  }
   static int save_bytes(const ProgramConfig& config) {
-    return sizeof(VertexRecord) + sizeof(PathRecord) + sizeof(FinishedRecord) + 2 * sizeof(MonoAddress) +
-           RayStore::room_bytes(config);
+    return int{sizeof(VertexRecord)} + RecordSizes(config.features).path + int{sizeof(FinishedRecord)} +
+           2 * int{sizeof(MonoAddress)} + RayStore::room_bytes(config);
   }
 
   const char* name() const override { return "path stage"; }

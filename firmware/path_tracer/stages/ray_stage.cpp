@@ -20,7 +20,8 @@ void RayStage::process(std::uint64_t step, int block) {
     prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, context_.layout.reach);
   arguments.prefilter = &prefilter_;
   arguments.reach = context_.layout.reach;
-  arguments.surfaces = context_.layout.surfaces.address;
+  arguments.surfaces = {context_.layout.surfaces.address, context_.layout.sizes.surface};
+  arguments.hit_has_tail = context_.layout.sizes.hit_has_tail();
   arguments.hit = PolyPointer<HitRecord>(context_.saves.buffer(step));
   arguments.surface_place = bin.surface_place;
   arguments.hit_something = &bin.hit_something;
@@ -29,7 +30,8 @@ void RayStage::process(std::uint64_t step, int block) {
 
 void RayStage::save(std::uint64_t step, int block) {
   const PolyPointer<HitRecord> hit(context_.saves.buffer(step));
-  save_block(step, block, context_.layout.intersection_bin, hit, bin_block(block).live);
+  save_block(step, block, context_.layout.intersection_bin, hit, bin_block(block).live,
+             context_.layout.sizes.hit);
 }
 
 }  // namespace path_tracer

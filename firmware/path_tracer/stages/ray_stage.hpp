@@ -10,7 +10,7 @@ class RayStage : public Stage {
  public:
   using Stage::Stage;
   static constexpr int kLoadBytes = sizeof(RayRecord);
-  static constexpr int kSaveBytes = sizeof(HitRecord);
+  static int save_bytes(const ProgramConfig& config) { return RecordSizes(config.features).hit; }
 
   const char* name() const override { return "ray stage"; }
   void load(std::uint64_t step, int block) override;

@@ -45,20 +45,28 @@ class Stage {
   int num_pes() const { return context_.machine.num_pes(); }
   std::uint64_t first_slot(int block) const { return std::uint64_t(block) * std::uint64_t(num_pes()); }
 
+  /// @param record_bytes of a record, with its tail (records/tails.hpp)
   template <class Record>
-  cn::MonoPlaces block_of(cn::MonoPointer<Record> bin, int block) const {
-    return cn::MonoPlaces::array((bin + first_slot(block)).address, sizeof(Record));
+  cn::MonoPlaces block_of(cn::MonoPointer<Record> bin, int block, int record_bytes = sizeof(Record)) const {
+    const auto bytes = std::uint64_t(record_bytes);
+    return cn::MonoPlaces::array(bin.address + first_slot(block) * bytes, bytes);
   }
 
   template <class Record>
   void load_block(std::uint64_t step, int block, PolyPointer<Record> to, cn::MonoPointer<Record> bin,
-                  const LaneMask& enabled) {
-    context_.loads.copy_m2p(step, block, to.span(), block_of(bin, block), enabled);
+                  const LaneMask& enabled, int record_bytes = sizeof(Record)) {
+    context_.loads.copy_m2p(step, block, with_tail(to, record_bytes), block_of(bin, block, record_bytes),
+                            enabled);
   }
   template <class Record>
   void save_block(std::uint64_t step, int block, cn::MonoPointer<Record> bin, PolyPointer<Record> from,
-                  const LaneMask& enabled) {
-    context_.saves.copy_p2m(step, block, block_of(bin, block), from.span(), enabled);
+                  const LaneMask& enabled, int record_bytes = sizeof(Record)) {
+    context_.saves.copy_p2m(step, block, block_of(bin, block, record_bytes), with_tail(from, record_bytes),
+                            enabled);
+  }
+  template <class Record>
+  static cn::PolySpan with_tail(PolyPointer<Record> record, int record_bytes) {
+    return {record.span().offset_bytes, record_bytes};
   }
 
   Bins::Block& bin_block(int block) const { return context_.bins.blocks[std::size_t(block)]; }

@@ -37,7 +37,8 @@ TreeStage::Loads TreeStage::loads(std::uint64_t step) const {
 
 TreeStage::Hits TreeStage::hits(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  return {cutter.take<HitRecord>(), cutter.take_place(), cutter.take_place(), cutter.take_place()};
+  return {cutter.take_with_tail<HitRecord>(context_.layout.sizes.hit), cutter.take_place(), cutter.take_place(),
+          cutter.take_place()};
 }
 
 LaneMask TreeStage::packed_rays(int block) const {
@@ -129,8 +130,9 @@ void TreeStage::finish(std::uint64_t step, PolyPointer<TraversalRecord> record, 
   const Hits to = hits(step);
   FinishArguments arguments;
   arguments.record = record;
-  arguments.surfaces = context_.layout.surfaces.address;
-  arguments.hits = context_.layout.intersection_bin.address;
+  arguments.surfaces = {context_.layout.surfaces.address, context_.layout.sizes.surface};
+  arguments.hits = {context_.layout.intersection_bin.address, context_.layout.sizes.hit};
+  arguments.hit_has_tail = context_.layout.sizes.hit_has_tail();
   arguments.surface_places = context_.layout.surface_place_bin.address;
   arguments.hit = to.hit;
   arguments.surface_place = to.surface_place;
@@ -143,7 +145,7 @@ void TreeStage::save_hits(std::uint64_t step) {
   if (!finished_.any()) return;
   const Hits from = hits(step);
   context_.saves.copy_p2m(step, TransferRing::kNoBlock, context_.machine.places_in(from.hit_to),
-                          from.hit.span(), finished_);
+                          with_tail(from.hit, context_.layout.sizes.hit), finished_);
   context_.saves.copy_p2m(step, TransferRing::kNoBlock, context_.machine.places_in(from.surface_place_to),
                           {from.surface_place.offset_bytes, sizeof(MonoAddress)}, finished_);
   tree_.last_hit_step = step;

@@ -22,7 +22,9 @@ class TreeStage : public Stage {
  public:
   TreeStage(const StageContext& context, TreeContext& tree)
       : Stage(context), tree_(tree), kernels_(context.kernels.traversal()) {}
-  static constexpr int kSaveBytes = sizeof(HitRecord) + 3 * sizeof(MonoAddress);
+  static int save_bytes(const ProgramConfig& config) {
+    return RecordSizes(config.features).hit + 3 * int{sizeof(MonoAddress)};
+  }
   static int load_bytes(const TreeShape& shape);
 
   bool works_on_slots() const override { return false; }

@@ -21,8 +21,9 @@ int save_buffer_bytes(const ProgramConfig& config) {
                    config.uses_tree() ? TreeStage::save_bytes(config) : 0});
 }
 
-const ProgramConfig& valid(const ProgramConfig& config) {
+ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
   validate(config);
+  config.features = layout.features;
   return config;
 }
 
@@ -56,15 +57,15 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
                        const Layout& layout, const Work& work)
     : machine_(with_semaphores_and_stack(machine)),
       kernels_(kernels),
-      config_(valid(config)),
+      config_(built_for(layout, config)),
       layout_(layout),
-      bins_(make_bins(machine.poly_memory(), config.bin_blocks)),
-      rings_(make_rings(machine, config)),
-      radiance_rings_(make_radiance_rings(machine, config)),
+      bins_(make_bins(machine.poly_memory(), config_.bin_blocks)),
+      rings_(make_rings(machine, config_)),
+      radiance_rings_(make_radiance_rings(machine, config_)),
       search_(make_search(context(rings_))),
       intersection_stage_(context(rings_), search_->rays()),
       path_stage_(context(rings_), search_->rays(), work),
-      steps_(machine, {rings_.loads, rings_.saves, config.load_buffers()}),
+      steps_(machine, {rings_.loads, rings_.saves, config_.load_buffers()}),
       radiance_(context(radiance_rings_), rings_.saves) {}
 
 void PathTracer::run(const Progress& progress) {

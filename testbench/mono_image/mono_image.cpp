@@ -11,6 +11,7 @@
 #include "firmware/path_tracer/geometry/triangle_record.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/faces.hpp"
+#include "testbench/mono_image/scene_features.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -75,6 +76,7 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
 struct Lights {
   std::vector<LightRecord> records;
   std::vector<double> cdf;
+  double total_power = 0;
 };
 
 /// Part of the scene that is sampled as one light.
@@ -163,6 +165,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
     throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
 
   Lights lights;
+  lights.total_power = total_power;
   double power_so_far = 0;
   for (const Emitter& emitter : emitters) {
     const double pdf = power(emitter, scene) / total_power / area(emitter);
@@ -245,19 +248,35 @@ void put_light_runs(MonoImage& image, const Scene& scene, const std::vector<std:
   }
 }
 
-void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces) {
+/// Writes a record of a surface's tail (records/tails.hpp), if the scene's surfaces have it.
+template <class Tail>
+void put_tail(MonoImage& image, std::size_t triangle, int place, const Tail& tail) {
+  if (place == path_tracer::RecordSizes::kNone) return;
+  const std::uint64_t surface = triangle * std::uint64_t(image.layout.sizes.surface);
+  std::memcpy(image.bytes.data() + image.layout.surfaces.address + surface + std::uint64_t(place), &tail,
+              sizeof(tail));
+}
+
+void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
+                  const Lights& lights) {
+  const path_tracer::RecordSizes& sizes = image.layout.sizes;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     const Triangle& triangle = scene.triangles[i];
     const SurfaceRecord record =
         surface_record(triangle, scene.materials[std::size_t(triangle.material)], faces[i]);
     const std::uint64_t place = i * std::uint64_t(image.layout.sizes.surface);
     std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
+    // As in its light's record: area / (power / total power).
+    const glm::dvec3& emission = scene.materials[std::size_t(triangle.material)].emission;
+    put_tail(image, i, sizes.aim,
+             path_tracer::AimRecord{lights.total_power / (emission.x + emission.y + emission.z)});
   }
 }
 
 }  // namespace
 
-MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config) {
+MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options) {
+  const path_tracer::ProgramConfig config = built_for(scene, options);
   const std::vector<std::int32_t> faces = number_faces(scene.triangles);
   const Lights lights = make_lights(scene, faces, config.light_sampling);
   const double reach = reach_of(scene);
@@ -278,7 +297,7 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   for (std::size_t place = 0; place < order.size(); ++place)
     put_triangle(image, scene, faces, order[place], place);
   if (config.uses_tree()) put_light_runs(image, scene, faces, lights);
-  put_surfaces(image, scene, faces);
+  put_surfaces(image, scene, faces, lights);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
   if (config.uses_tree())

@@ -4,6 +4,7 @@
 
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
+#include "firmware/path_tracer/kernels/shade.hpp"
 #include "firmware/path_tracer/prefilter/prefilter_search.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
@@ -48,10 +49,8 @@ void aim(const ScatterArguments& arguments, const Surface& surface, const mask& 
                                    light.get(&LightRecord::edge2), light.get(&LightRecord::normal)};
   const poly<double> u = arguments.path.get(&PathRecord::light_u);
   const poly<double> v = arguments.path.get(&PathRecord::light_v);
-  const LightSample sample = arguments.light_sampling == LightSampling::area
-                                 ? sample_light_area(light_surface, surface.position, surface.normal, u, v)
-                                 : sample_light_solid_angle(light_surface, light.get(&LightRecord::shape),
-                                                            surface.position, surface.normal, u, v);
+  const LightSample sample = sample_light(arguments.light_sampling, light_surface, light.get(&LightRecord::shape),
+                                          surface.position, surface.normal, u, v);
   const mask facing = sample.weight > 0.0;
   const poly<double> scale = cn::select(facing, sample.weight, poly<double>(0.0)) *
                              light.get(&LightRecord::inverse_pdf) * (1.0 / kPi);
@@ -99,9 +98,6 @@ void scatter(const ScatterArguments& arguments) {
                         cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
   if (arguments.casts_shadow_rays) aim(arguments, surface, reflects);
 }
-
-void shade(const ShadeArguments& arguments) { scatter(arguments); }
-constexpr double kInfinity = 1e300;
 
 void illuminate(const IlluminateArguments& arguments) {
   const mask sees =

@@ -62,6 +62,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   const TreeShape& tree = config.tree;
   Layout layout;
   MonoAllocator memory(layout.regions);
+  layout.features = config.features;
   layout.sizes = RecordSizes(config.features);
   layout.triangle_count = scene.triangles;
   layout.light_count = scene.lights;

@@ -30,6 +30,7 @@ struct Layout {
   int light_count = 0;
   int tree_slots = 0;
   int treelet_pool_blocks = 0;
+  Features features;              ///< of the scene; the firmware is built for them
   RecordSizes sizes{Features{}};  ///< of records with tails: surfaces, intersection_bin, scatter_bin, path_bin
   vec3<double> environment{};     ///< radiance that arrives from outside the scene
   double reach = 0;               ///< no ray starts farther from a vertex (triangle_record.hpp)

@@ -59,7 +59,7 @@ inline constexpr int kVerticesPerLoad = 4;
 
 /// How the firmware is built and run.
 struct ProgramConfig {
-  Features features;  ///< of the scene
+  Features features;  ///< of the scene; PathTracer takes them from the layout
   Program program = Program::full;
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;

@@ -5,29 +5,40 @@
 /// number.
 namespace path_tracer {
 
-/// Ways in which surfaces of a scene scatter light beside diffuse reflection.
+/// The lobes that the materials of a scene have. Mono: a program is built for the scene, so a lobe that no
+/// material has costs no instruction. materials/lobe_table.hpp describes each.
 struct Lobes {
-  bool glossy = false;       ///< reflection by a rough surface (microfacets)
-  bool mirror = false;       ///< reflection by a smooth one
-  bool glass = false;        ///< reflection and refraction by a smooth surface
-  bool rough_glass = false;  ///< the same by a rough one
-  bool coat = false;         ///< a clear layer above
-  bool sheen = false;        ///< fibres above
-  bool absorption = false;   ///< light fades within the volume that the surface bounds
+  bool diffuse = false;
+  bool glossy = false;
+  bool mirror = false;
+  bool glass = false;
+  bool rough_glass = false;
+  bool coat = false;
+  bool sheen = false;
+  bool absorption = false;
 
-  bool any() const { return glossy || mirror || glass || rough_glass || coat || sheen || absorption; }
-  bool transmits() const { return glass || rough_glass; }
+  constexpr bool rough_specular() const { return glossy || rough_glass; }
+  constexpr bool smooth_specular() const { return mirror || glass; }
+  constexpr bool specular() const { return rough_specular() || smooth_specular(); }
+  constexpr bool transmissive() const { return glass || rough_glass; }
+  /// Lobes that are sampled by the cosine: diffuse reflection, and light that a rough metal scatters more
+  /// than once.
+  constexpr bool cosine() const { return diffuse || glossy; }
+  constexpr int ways_to_sample() const { return int(specular()) + int(cosine()) + int(coat) + int(sheen); }
+  constexpr bool only_diffuse() const { return diffuse && !specular() && !coat && !sheen; }
+  /// Lobes that reflect into more than single directions, so that they can be evaluated.
+  constexpr bool evaluable() const { return cosine() || rough_specular() || coat || sheen; }
 };
 
 struct Features {
-  Lobes lobes;
+  Lobes lobes{true};
   bool lights = true;        ///< triangles that emit, to aim shadow rays at
   bool environment = false;  ///< light that arrives from outside
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 
-  /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits.
-  bool plain() const { return !lobes.any() && !environment && !multiple_importance; }
+  /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits alone.
+  constexpr bool plain() const { return lobes.only_diffuse() && !environment && !multiple_importance; }
 };
 
 }  // namespace path_tracer

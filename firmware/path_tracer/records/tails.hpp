@@ -15,10 +15,13 @@ struct ArrivalRecord {
 /// Behind a SurfaceRecord: a material that is not only diffuse (materials/material.hpp).
 struct MaterialRecord {
   double metallic = 0;
-  double roughness = 1;
-  double specular = 0;
+  double roughness = 1;  ///< the square root of GGX's width
+  double f0 = 0;         ///< of what is not metal: reflectance at normal incidence
+  double f90 = 0;        ///< the same at grazing incidence
   double transmission = 0;
-  double ior = 1.5;
+  double ior = 1.5;       ///< index of refraction behind the front
+  std::int32_t thin = 0;  ///< 1: transmits without refraction
+  std::int32_t unused = 0;
 };
 struct AbsorptionRecord {
   vec3<double> coefficient{};  ///< per unit of length
@@ -71,7 +74,7 @@ struct RecordSizes {
       surface += static_cast<int>(bytes);
       return place;
     };
-    material = append(features.lobes.any(), sizeof(MaterialRecord));
+    material = append(features.lobes.specular(), sizeof(MaterialRecord));
     absorption = append(features.lobes.absorption, sizeof(AbsorptionRecord));
     coat = append(features.lobes.coat, sizeof(CoatRecord));
     sheen = append(features.lobes.sheen, sizeof(SheenRecord));

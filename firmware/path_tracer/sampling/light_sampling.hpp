@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/path_tracer/program/program_config.hpp"
 #include "firmware/path_tracer/sampling/sampling.hpp"
 
 /// Sampling a point on a light, as seen from a point that it may light.
@@ -355,6 +356,14 @@ inline LightSample sample_light_solid_angle(const LightSurface& light, const pol
     });
   });
   return sample;
+}
+
+/// A point of the light and what it contributes.
+inline LightSample sample_light(LightSampling sampling, const LightSurface& light,
+                                const poly<std::int32_t>& shape, const Point3& position,
+                                const Direction3& normal, const poly<double>& u, const poly<double>& v) {
+  return sampling == LightSampling::area ? sample_light_area(light, position, normal, u, v)
+                                         : sample_light_solid_angle(light, shape, position, normal, u, v);
 }
 
 }  // namespace path_tracer

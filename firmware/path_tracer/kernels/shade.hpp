@@ -1,0 +1,225 @@
+#pragma once
+
+#include <limits>
+
+#include "firmware/path_tracer/kernels/kernels.hpp"
+#include "firmware/path_tracer/kernels/places.hpp"
+#include "firmware/path_tracer/materials/absorption.hpp"
+#include "firmware/path_tracer/materials/sample_bsdf.hpp"
+#include "firmware/path_tracer/sampling/light_sampling.hpp"
+#include "firmware/path_tracer/sampling/sampler.hpp"
+
+/// What happens to a segment at the surface that it hit, in scenes that are not plain (records/features.hpp).
+///
+/// Light of emitting triangles arrives by shadow rays and by hits. For each light point y that a vertex x sees,
+/// the weights of both add up to 1, so that the sum is unbiased whatever they are. They are the power heuristic
+/// (Veach and Guibas, SIGGRAPH 1995) of two densities by solid angle: the BSDF's, and that of a point uniform in
+/// the lights' areas. The latter stands for the density that shadow rays have in fact, which is close to it for
+/// small or distant lights; near a large light it is lower, where hits do better.
+namespace path_tracer {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A vertex of a path, as its next segment and its shadow ray need it.
+struct ShadedVertex {
+  Point3 position;
+  Bsdf bsdf;
+  /// Where hits and shadow rays share the light. Elsewhere it comes by shadow rays alone.
+  mask shares_light;
+};
+
+/// The BSDF's parameters at the hit, seen from the side that the segment arrived from.
+inline Material read_material(const ShadeArguments& arguments, const mask& front) {
+  const PolyPointer<SurfaceRecord>& surface = arguments.surface;
+  const RecordSizes& sizes = arguments.sizes;
+  const Lobes& lobes = arguments.features.lobes;
+  Material material{};
+  bsdf_detail::assign(material.base_color, surface.get(&SurfaceRecord::reflectance));
+  if (lobes.specular()) {
+    const auto record = tail<MaterialRecord>(surface, sizes.material);
+    material.metallic.assign_all_lanes(record.get(&MaterialRecord::metallic));
+    material.roughness.assign_all_lanes(record.get(&MaterialRecord::roughness));
+    material.f0.assign_all_lanes(record.get(&MaterialRecord::f0));
+    material.f90.assign_all_lanes(record.get(&MaterialRecord::f90));
+    if (lobes.transmissive()) {
+      const poly<double> ior = record.get(&MaterialRecord::ior);
+      material.transmission.assign_all_lanes(record.get(&MaterialRecord::transmission));
+      material.eta.assign_all_lanes(cn::select(front, ior, 1.0 / ior));
+      material.thin = record.get(&MaterialRecord::thin) != 0;
+    }
+  }
+  if (lobes.coat) {
+    const auto record = tail<CoatRecord>(surface, sizes.coat);
+    material.coat.assign_all_lanes(record.get(&CoatRecord::strength));
+    material.coat_roughness.assign_all_lanes(record.get(&CoatRecord::roughness));
+  }
+  if (lobes.sheen) {
+    const auto record = tail<SheenRecord>(surface, sizes.sheen);
+    bsdf_detail::assign(material.sheen_color, record.get(&SheenRecord::colour));
+    material.sheen_roughness.assign_all_lanes(record.get(&SheenRecord::roughness));
+  }
+  return material;
+}
+
+/// Whether the material reflects only diffusely.
+inline mask is_diffuse(const Lobes& lobes, const Material& material) {
+  mask diffuse = poly<double>(0.0) == poly<double>(0.0);
+  if (lobes.specular()) diffuse = diffuse & (material.metallic == 0.0) & (material.f90 == 0.0);
+  if (lobes.transmissive()) diffuse = diffuse & (material.transmission == 0.0);
+  if (lobes.coat) diffuse = diffuse & (material.coat == 0.0);
+  if (lobes.sheen) diffuse = diffuse & (largest_channel(material.sheen_color) == 0.0);
+  return diffuse;
+}
+
+/// The power heuristic's weight of the first density, with exponent 2.
+/// @param first positive, may be infinite
+inline poly<double> power_heuristic(const poly<double>& first, const poly<double>& second) {
+  const poly<double> ratio = second / first;
+  return 1.0 / (1.0 + ratio * ratio);
+}
+
+/// Density by solid angle of a point uniform in the lights' areas.
+/// @param facing -cosine at the light * distance
+/// @param inverse_pdf by area
+inline poly<double> light_pdf(const poly<double>& distance_squared, const poly<double>& distance,
+                              const poly<double>& facing, const poly<double>& inverse_pdf) {
+  return distance_squared * distance / (facing * inverse_pdf);
+}
+
+/// The share of the emission that counts where the segment hit a light.
+inline poly<double> weight_of_hit(const ShadeArguments& arguments, const Direction3& normal) {
+  if (!arguments.casts_shadow_rays) return 1.0;
+  const poly<double> pdf = tail<DirectionRecord>(arguments.path).get(&DirectionRecord::pdf);
+  const mask counts = pdf > 0.0;
+  const poly<double> none = 0.0;
+  if (arguments.sizes.aim == RecordSizes::kNone) return cn::select(counts, poly<double>(1.0), none);
+  const auto arrival = tail<ArrivalRecord>(arguments.hit);
+  const poly<double> distance = arrival.get(&ArrivalRecord::distance);
+  const poly<double> facing = -dot(arrival.get(&ArrivalRecord::direction), normal) * distance;
+  const poly<double> inverse_pdf =
+      tail<AimRecord>(arguments.surface, arguments.sizes.aim).get(&AimRecord::inverse_pdf);
+  const poly<double> other = light_pdf(distance * distance, distance, facing, inverse_pdf);
+  return cn::select(counts, power_heuristic(cn::select(counts, pdf, poly<double>(1.0)), other), none);
+}
+
+/// Aims a shadow ray and records what it contributes if it reaches its light.
+inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, const mask& wants_light) {
+  const PolyPointer<LightRecord>& light = arguments.light;
+  const LightSurface light_surface{light.get(&LightRecord::vertex), light.get(&LightRecord::edge1),
+                                   light.get(&LightRecord::edge2), light.get(&LightRecord::normal)};
+  const Direction3& normal = vertex.bsdf.point.geometric_normal;
+  const LightSample sample =
+      sample_light(arguments.light_sampling, light_surface, light.get(&LightRecord::shape), vertex.position, normal,
+                   arguments.path.get(&PathRecord::light_u), arguments.path.get(&PathRecord::light_v));
+  const mask facing = sample.weight > 0.0;
+  const poly<double> inverse_pdf = light.get(&LightRecord::inverse_pdf);
+  const poly<double> distance_squared = dot(sample.to_light, sample.to_light);
+  const poly<double> distance = cn::sqrt(distance_squared);
+  const Direction3 to_light =
+      cn::select(facing, sample.to_light * (1.0 / cn::select(facing, distance, poly<double>(1.0))), normal);
+  const BsdfValue value = evaluate_bsdf(vertex.bsdf, to_light);
+  poly<double> scale = cn::select(facing, sample.weight * inverse_pdf / dot(to_light, normal), poly<double>(0.0));
+  if (arguments.features.multiple_importance) {
+    const poly<double> here =
+        light_pdf(distance_squared, distance, -dot(sample.to_light, light_surface.normal), inverse_pdf);
+    const poly<double> weight = power_heuristic(cn::select(facing, here, poly<double>(1.0)), value.pdf);
+    scale = scale * cn::select(vertex.shares_light, weight, poly<double>(1.0));
+  }
+  const Rgb contribution = value.value * scale;
+  arguments.shadow_ray.set(&RayRecord::origin, vertex.position);
+  arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
+  arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
+  arguments.shadow_ray.set(&RayRecord::light_face, light.get(&LightRecord::face));
+  arguments.lighting.set(&LightingRecord::weight, contribution);
+  arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
+  cn::keep(arguments.cull_shadow_rays ? wants_light & (largest_channel(contribution) > 0.0) : wants_light,
+           *arguments.casts);
+}
+
+/// Absorption of the segment that arrives, if it went through the body of the surface that it hit.
+inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
+  const poly<double> one = 1.0;
+  if (!arguments.features.lobes.absorption) return {one, one, one};
+  const Rgb coefficient =
+      tail<AbsorptionRecord>(arguments.surface, arguments.sizes.absorption).get(&AbsorptionRecord::coefficient);
+  const poly<double> distance = tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::distance);
+  return cn::select(front, Rgb{one, one, one}, transmittance(coefficient, distance));
+}
+
+inline Bsdf bsdf_at_hit(const ShadeArguments& arguments, const Direction3& normal, const mask& front) {
+  BsdfConfig config;
+  config.lobes = arguments.features.lobes;
+  config.diffuse_pdf = arguments.features.multiple_importance;
+  config.skips_absent_lobes = true;
+  const Direction3 to_viewer =
+      tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction) * -1.0;
+  return prepare_bsdf(config, read_material(arguments, front), {normal, normal, to_viewer});
+}
+
+/// Where hits and shadow rays share the light.
+inline mask shares_light(const ShadeArguments& arguments, const Material& material) {
+  const mask all = poly<double>(0.0) == poly<double>(0.0);
+  switch (arguments.estimator) {
+    case Estimator::light: return !all;
+    case Estimator::mis: return all;
+    case Estimator::per_lobe: break;
+  }
+  return !is_diffuse(arguments.features.lobes, material);
+}
+
+/// Continues the path or ends it by Russian roulette. Returns the lanes that may reflect light.
+inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& vertex, const mask& hit,
+                        const Rgb& arrived) {
+  const PolyPointer<PathRecord>& path = arguments.path;
+  const poly<std::int32_t> pixel = path.get(&PathRecord::pixel);
+  const poly<std::int32_t> number = path.get(&PathRecord::sample);
+  const poly<std::int32_t> depth = path.get(&PathRecord::depth);
+  const ScatterNumbers random = scatter_numbers(arguments.sampler, arguments.seed, pixel, number, depth);
+  const poly<double> lobe = arguments.features.lobes.only_diffuse()
+                                ? random.roulette
+                                : lobe_number(arguments.sampler, arguments.seed, pixel, number, depth);
+  const BsdfSample sample = sample_bsdf(vertex.bsdf, random.direction, lobe);
+
+  const poly<double> strongest = largest_channel(sample.weight);
+  const mask safe = depth < arguments.roulette_start;
+  const poly<double> survival =
+      cn::select(safe, poly<double>(1.0), cn::min(strongest, poly<double>(arguments.max_survival)));
+  const mask goes_on = hit & (strongest > 0.0) & (random.roulette < survival);
+  const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
+  const Rgb none{0.0, 0.0, 0.0};
+  arguments.scatter.set(&ScatterRecord::position, vertex.position);
+  arguments.scatter.set(&ScatterRecord::direction, sample.direction);
+  arguments.scatter.set(&ScatterRecord::weight,
+                        cn::select(goes_on, sample.weight * arrived * inverse_survival, none));
+  arguments.scatter.set(&ScatterRecord::face, arguments.surface.get(&SurfaceRecord::face));
+  arguments.scatter.set(&ScatterRecord::ended,
+                        cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
+  const poly<double> shared = cn::select(vertex.shares_light, sample.pdf, poly<double>(0.0));
+  tail<DirectionRecord>(arguments.scatter)
+      .set(&DirectionRecord::pdf, cn::select(sample.is_delta | sample.transmits, poly<double>(kInfinity), shared));
+  return hit;
+}
+
+inline void shade(const ShadeArguments& arguments) {
+  const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
+  const mask front = arguments.hit.get(&HitRecord::front) != 0;
+  const Direction3 surface_normal = arguments.surface.get(&SurfaceRecord::normal);
+  const Direction3 normal = cn::select(front, surface_normal, surface_normal * -1.0);
+  const Rgb arrived = absorb(arguments, front);
+
+  const Rgb emission = arguments.surface.get(&SurfaceRecord::emission) * weight_of_hit(arguments, normal);
+  const Rgb none{0.0, 0.0, 0.0};
+  const Rgb outside = arguments.features.environment
+                          ? Rgb{arguments.environment.x, arguments.environment.y, arguments.environment.z}
+                          : none;
+  const Rgb inside = cn::select(front, emission * arrived, none);
+  arguments.scatter.set(&ScatterRecord::radiance, cn::select(hit, inside, outside));
+
+  const Bsdf bsdf = bsdf_at_hit(arguments, normal, front);
+  const ShadedVertex vertex{arguments.hit.get(&HitRecord::position), bsdf,
+                            shares_light(arguments, bsdf.material)};
+  const mask reflects = continue_at(arguments, vertex, hit, arrived);
+  if (arguments.casts_shadow_rays) aim(arguments, vertex, reflects);
+}
+
+}  // namespace path_tracer

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "firmware/path_tracer/program/program_config.hpp"
+#include "testbench/scene/scene.hpp"
+
+namespace testbench {
+
+/// What the firmware must be built for to render the scene with these options.
+path_tracer::Features features_of(const Scene& scene, const path_tracer::ProgramConfig& config);
+
+/// The options with the features of the scene.
+path_tracer::ProgramConfig built_for(const Scene& scene, path_tracer::ProgramConfig config);
+
+}  // namespace testbench

@@ -3,7 +3,7 @@
 # Debian 12 packages. The CMake files that use them say what for; python3 runs .ci/layers.
 packages=(
   g++ cmake ninja-build pkg-config binutils
-  libsystemc-dev libglm-dev libopenexr-dev libpng-dev libssl-dev
+  libsystemc-dev libglm-dev libopenexr-dev libpng-dev libjpeg-dev libssl-dev
   libsleef-dev librandom123-dev libglu1-mesa-dev libmeshoptimizer-dev libdraco-dev libembree-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev

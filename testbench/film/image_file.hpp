@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "testbench/film/film.hpp"
+#include "testbench/texture/image.hpp"
 
 namespace testbench {
 
@@ -23,16 +24,9 @@ void write_png(const std::filesystem::path& path, const Film& film);
 /// The 8-bit sRGB code of a linear value, as write_png() stores it.
 int srgb_code(double linear);
 
-/// R, G and B of each pixel, row by row, the top row first.
-struct ExrImage {
-  int width = 0;
-  int height = 0;
-  std::vector<float> rgb;
-};
-
-/// Reads channels R, G and B of an OpenEXR file. Throws InputError if it cannot be read or a channel is
-/// missing.
-ExrImage read_exr_rgb(const std::filesystem::path& path);
+/// Reads channels R, G and B of an OpenEXR file of the size of a film. Throws InputError if it cannot be read
+/// or a channel is missing.
+RadianceImage read_exr_rgb(const std::filesystem::path& path);
 
 /// The content of a file of write_exr().
 struct ExrFilm {

@@ -68,6 +68,10 @@ std::string decode_base64(std::string text) {
   return bytes;
 }
 
+bool is_data_uri(const std::string& uri) {
+  return uri.compare(0, 5, "data:") == 0;
+}
+
 /// RFC 3986, section 2.1; std::nullopt for a % without two hexadecimal digits behind it.
 std::optional<std::string> decode_percent(const std::string& text) {
   std::string result;
@@ -105,7 +109,7 @@ void GltfDocument::remember_images() const {
     const nlohmann::json* const uri = find_gltf(image, "uri");
     if (uri == nullptr) continue;
     const std::optional<std::string> name = decode_percent(uri->get<std::string>());
-    if (name && name->compare(0, 5, "data:") != 0) reach_.remember(path_.parent_path() / *name);
+    if (name && !is_data_uri(*name)) reach_.remember(path_.parent_path() / *name);
   }
 }
 
@@ -229,16 +233,43 @@ std::string GltfDocument::buffer_bytes(const nlohmann::json& source, std::size_t
     if (index == 0 && has_binary_chunk_) return std::move(binary_chunk_);
     fail(pointer, "no uri", "one, or a .glb file's own binary chunk");
   }
-  const std::string text = uri->get<std::string>();
-  if (text.compare(0, 5, "data:") != 0) {
+  return uri_bytes(*uri, pointer, "buffer");
+}
+
+/// The bytes of a file or of a data URI.
+std::string GltfDocument::uri_bytes(const nlohmann::json& uri, const std::string& pointer,
+                                    const char* kind) const {
+  const std::string text = uri.get<std::string>();
+  if (!is_data_uri(text)) {
     const std::filesystem::path file = path_.parent_path() / file_of_uri(text, pointer + "/uri");
     reach_.require(file, file_ + ": " + pointer + "/uri");
-    return read_input_file(file, "the buffer that " + file_ + " names");
+    return read_input_file(file, "the " + std::string(kind) + " that " + file_ + " names");
   }
   const std::size_t start = text.find(";base64,");
   std::string bytes = start == std::string::npos ? "" : decode_base64(text.substr(start + 8));
-  if (bytes.empty()) fail(pointer + "/uri", json_in_message(*uri), "a file, or data:...;base64,...");
+  if (bytes.empty()) fail(pointer + "/uri", json_in_message(uri), "a file, or data:...;base64,...");
   return bytes;
+}
+
+std::string GltfDocument::image_name(std::size_t index) const {
+  const nlohmann::json& source = element("images", index);
+  const std::string pointer = "/images/" + std::to_string(index);
+  check(source, "image", pointer);
+  const nlohmann::json* const uri = find_gltf(source, "uri");
+  if ((uri == nullptr) == !source.contains("bufferView"))
+    fail(pointer, uri == nullptr ? "neither uri nor bufferView" : "uri and bufferView", "one of them");
+  if (uri == nullptr || is_data_uri(uri->get<std::string>())) return file_ + ": " + pointer;
+  const std::filesystem::path file =
+      path_.parent_path() / file_of_uri(uri->get<std::string>(), pointer + "/uri");
+  return file.lexically_normal().string();
+}
+
+std::string GltfDocument::image_bytes(std::size_t index) {
+  const nlohmann::json& source = element("images", index);
+  if (const nlohmann::json* const uri = find_gltf(source, "uri"))
+    return uri_bytes(*uri, "/images/" + std::to_string(index), "image");
+  const GltfBytes bytes = view(source.at("bufferView").get<std::size_t>());
+  return {reinterpret_cast<const char*>(bytes.data), bytes.size};
 }
 
 std::string GltfDocument::file_of_uri(const std::string& uri, const std::string& pointer) const {

@@ -38,6 +38,10 @@ class GltfDocument {
   /// A range of a buffer. @param pointer what asks for it, in the message
   GltfBytes range(std::size_t index, std::size_t offset, std::size_t length, const std::string& pointer);
 
+  /// The file of an image, or the part of this file that holds it.
+  std::string image_name(std::size_t index) const;
+  /// The bytes of an image, encoded as PNG or JPEG: of another file, a data URI or a buffer view.
+  std::string image_bytes(std::size_t index);
   /// "mesh 3 'chair'"
   std::string named(const char* array_name, const char* kind, std::size_t index) const;
   /// Checks a part that is only checked when it is used; see check_gltf().
@@ -54,6 +58,7 @@ class GltfDocument {
   void require_version() const;
   void require_supported() const;
   const std::string& buffer(std::size_t index);
+  std::string uri_bytes(const nlohmann::json& uri, const std::string& pointer, const char* kind) const;
   std::string buffer_bytes(const nlohmann::json& source, std::size_t index, const std::string& pointer);
   std::string file_of_uri(const std::string& uri, const std::string& pointer) const;
 

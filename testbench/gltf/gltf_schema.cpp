@@ -23,7 +23,13 @@ std::string range_of(const GltfType& type) {
   std::ostringstream text;
   text << (type.kind == GltfKind::integer ? "an integer" : "a number");
   if (std::isfinite(type.least)) text << (type.is_least_excluded ? " above " : " from ") << type.least;
-  if (std::isfinite(type.most)) text << " to " << std::uint64_t(type.most);
+  if (std::isfinite(type.most)) {
+    text << " to ";
+    if (type.most == std::floor(type.most))
+      text << std::uint64_t(type.most);
+    else
+      text << type.most;
+  }
   return text.str();
 }
 

@@ -6,7 +6,8 @@
 #include <map>
 
 #include "testbench/gltf/gltf_accessor.hpp"
-#include "testbench/scene/gltf_material.hpp"
+#include "testbench/material/gltf_material.hpp"
+#include "testbench/scene/gltf_light.hpp"
 #include "testbench/scene/gltf_nodes.hpp"
 #include "testbench/scene/gltf_primitive.hpp"
 
@@ -19,12 +20,15 @@ constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 26;
 /// Collects the triangles, materials and the camera of a document's nodes.
 class Collector {
  public:
-  Collector(GltfDocument& document, GltfFile& result)
-      : document_(document), result_(result), nodes_(read_gltf_nodes(document)) {
-    surfaces_.resize(document.array("materials").size());
-    materials_.resize(surfaces_.size());
-    materials_.push_back(
-        {"", glm::dvec3(1.0), glm::dvec3(0.0)});  // glTF's default, for primitives without one
+  Collector(GltfDocument& document, TextureStore& textures, GltfFile& result)
+      : document_(document), textures_(textures), result_(result), nodes_(read_gltf_nodes(document)) {
+    is_read_.resize(document.array("materials").size());
+    materials_.resize(is_read_.size());
+    Material standard;  // glTF's, for primitives without a material
+    standard.reflectance = glm::dvec3(1.0);
+    standard.metallic = 1.0;
+    standard.specular = 1.0;
+    materials_.push_back(std::move(standard));
   }
 
   void collect() {
@@ -33,9 +37,7 @@ class Collector {
       if (source.contains("mesh")) add_mesh(node, source);
       if (source.contains("camera") && !result_.camera)
         result_.camera = read_gltf_camera(document_, node, nodes_.transforms[node]);
-      if (find_gltf(source, "extensions", "KHR_lights_punctual") != nullptr)
-        document_.note("a light without area (KHR_lights_punctual) is left out",
-                       document_.named("nodes", "node", node));
+      if (find_gltf(source, "extensions", "KHR_lights_punctual") != nullptr) add_light(node);
     }
     if (!document_.array("animations").empty())
       document_.note("an animation is left out, its nodes stand as the file places them", "",
@@ -46,11 +48,18 @@ class Collector {
                          std::to_string(cut_out_) + " cut out)",
                      "one triangle or more");
     add_back_sides();
+    complete_corner_attributes(result_.mesh.corners, result_.mesh.triangles.size());
     keep_used_materials(materials_, result_.mesh);
     result_.mesh.notes.add(document_.notes());
   }
 
  private:
+  void add_light(std::size_t node) {
+    result_.mesh.lights.push_back(read_gltf_light(document_, node, nodes_.transforms[node]));
+    document_.note("a light without area (KHR_lights_punctual) is left out",
+                   document_.named("nodes", "node", node));
+  }
+
   void add_mesh(std::size_t node, const nlohmann::json& source) {
     const auto mesh = source["mesh"].get<std::size_t>();
     const nlohmann::json& of_mesh = document_.element("meshes", mesh);
@@ -64,6 +73,7 @@ class Collector {
     const std::vector<glm::dmat4> instances =
         joints.empty() ? read_gltf_instances(document_, node) : std::vector<glm::dmat4>{glm::dmat4(1.0)};
     for (; place.primitive < of_mesh["primitives"].size(); ++place.primitive) {
+      place.is_textured = has_texture(material(material_index(place)));
       const std::optional<GltfPrimitive> primitive = read_gltf_primitive(document_, place);
       if (!primitive) {
         ++points_and_lines_;
@@ -110,38 +120,69 @@ class Collector {
     positions.reserve(primitive.positions.size());
     for (std::uint32_t i = 0; i < primitive.positions.size(); ++i)
       positions.emplace_back(of_vertex(i) * glm::dvec4(primitive.positions[i], 1.0));
-    const nlohmann::json& source = document_.element("meshes", place.mesh)["primitives"][place.primitive];
-    const std::size_t material = size_or(source, "material", surfaces_.size());
-    const bool emits_from_both_sides = material < surfaces_.size() && surface(material).is_double_sided &&
-                                       materials_[material].emission != glm::dvec3(0.0);
+    const std::size_t plain = material_index(place);
+    const bool emits_from_both_sides =
+        material(plain).is_double_sided && material(plain).emission != glm::dvec3(0.0);
+    const std::vector<glm::dvec3> normals = moved_normals(primitive, of_vertex);
     // A transform that mirrors reverses the winding of triangles.
     const bool is_mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
     for (const auto& [a, b, c] : primitive.triangles) {
       const bool is_reversed =
           joints.empty() ? is_mirrored : glm::determinant(glm::dmat3(of_vertex(a))) < 0.0;
-      Triangle triangle{{positions[a], positions[is_reversed ? c : b], positions[is_reversed ? b : c]}, 0};
-      const auto index = material_of(primitive, {a, b, c}, material, where);
+      const std::array<std::uint32_t, 3> corners{a, is_reversed ? c : b, is_reversed ? b : c};
+      Triangle triangle{{positions[corners[0]], positions[corners[1]], positions[corners[2]]}, 0};
+      const auto index = material_of(primitive, {a, b, c}, plain, where);
       if (!index) continue;
       triangle.material = *index;
-      add_triangle(triangle, emits_from_both_sides, where);
+      if (add_triangle(triangle, emits_from_both_sides, where))
+        add_corners(primitive, normals, corners, triangle);
     }
   }
 
-  /// Reads a material when its first triangle comes.
-  const GltfSurface& surface(std::size_t material) {
-    if (!surfaces_[material]) {
-      surfaces_[material] = read_gltf_material(document_, material);
-      materials_[material] = surfaces_[material]->material;
+  /// The normals of a primitive's vertices in the scene's coordinates. @param of_vertex returns the transform
+  template <class OfVertex>
+  static std::vector<glm::dvec3> moved_normals(const GltfPrimitive& primitive, const OfVertex& of_vertex) {
+    std::vector<glm::dvec3> normals;
+    normals.reserve(primitive.normals.size());
+    for (std::uint32_t i = 0; i < primitive.normals.size(); ++i)
+      normals.push_back(normal_transform(glm::dmat3(of_vertex(i))) * primitive.normals[i]);
+    return normals;
+  }
+
+  /// Adds what the corners of the last triangle have.
+  void add_corners(const GltfPrimitive& primitive, const std::vector<glm::dvec3>& normals,
+                   const std::array<std::uint32_t, 3>& corners, const Triangle& triangle) {
+    const auto of = [&corners](const auto& all) {
+      return std::array{all[corners[0]], all[corners[1]], all[corners[2]]};
+    };
+    TriangleAttributes attributes;
+    if (!normals.empty()) attributes.normals = corner_normals(triangle.vertex, of(normals));
+    for (std::size_t set = 0; set < primitive.coordinates.size(); ++set)
+      if (!primitive.coordinates[set].empty())
+        attributes.coordinates[set] = corner_coordinates(of(primitive.coordinates[set]));
+    set_corner_attributes(result_.mesh.corners, result_.mesh.triangles.size() - 1, attributes);
+  }
+
+  /// The material of a primitive; the one behind the file's own for none.
+  std::size_t material_index(const GltfPrimitivePlace& place) const {
+    const nlohmann::json& source = document_.element("meshes", place.mesh)["primitives"][place.primitive];
+    return size_or(source, "material", is_read_.size());
+  }
+
+  /// Reads a material when its first primitive comes.
+  const Material& material(std::size_t index) {
+    if (index < is_read_.size() && !is_read_[index]) {
+      is_read_[index] = true;
+      materials_[index] = read_gltf_material(document_, textures_, index);
     }
-    return *surfaces_[material];
+    return materials_[index];
   }
 
   /// The material of a triangle, of which there is one for each colour; std::nullopt if it is cut out. A
   /// Lambertian triangle has one colour, so it gets the average of its vertices.
   std::optional<std::int32_t> material_of(const GltfPrimitive& primitive,
-                                          const std::array<std::uint32_t, 3>& triangle, std::size_t material,
+                                          const std::array<std::uint32_t, 3>& triangle, std::size_t index,
                                           const std::string& where) {
-    const GltfSurface* const surface_of = material < surfaces_.size() ? &surface(material) : nullptr;
     glm::dvec4 colour(1.0);
     if (!primitive.colours.empty()) {
       const glm::dvec4 corners[3] = {primitive.colours[triangle[0]], primitive.colours[triangle[1]],
@@ -150,28 +191,31 @@ class Collector {
       colour = is_one ? corners[0] : glm::min((corners[0] + corners[1] + corners[2]) / 3.0, 1.0);
       if (!is_one) document_.note("a triangle whose vertices differ in colour has their average", where);
     }
-    if (surface_of != nullptr && surface_of->is_masked && surface_of->alpha * colour.a < surface_of->cutoff) {
+    const Material& plain = material(index);
+    if (plain.alpha_mode == AlphaMode::opaque) colour.a = 1.0;
+    if (plain.alpha_mode == AlphaMode::mask && plain.alpha * colour.a < plain.alpha_cutoff) {
       ++cut_out_;
       return std::nullopt;
     }
-    if (glm::dvec3(colour) == glm::dvec3(1.0)) return static_cast<std::int32_t>(material);
-    const Material plain = materials_[material];
-    return coloured_.try_emplace(material, materials_)
-        .first->second.index_of(plain.reflectance * glm::dvec3(colour), plain.emission);
+    if (colour == glm::dvec4(1.0)) return static_cast<std::int32_t>(index);
+    const glm::dvec4 all(plain.reflectance * glm::dvec3(colour), plain.alpha * colour.a);
+    return coloured_.try_emplace(index, materials_).first->second.index_of(all, plain);
   }
 
-  void add_triangle(const Triangle& triangle, bool emits_from_both_sides, const std::string& where) {
+  /// Returns whether it has an area.
+  bool add_triangle(const Triangle& triangle, bool emits_from_both_sides, const std::string& where) {
     if (!is_in_range(triangle))
       document_.fail(where, "a coordinate that is no number or too large", "numbers of at most 1e100");
     if (is_degenerate(triangle)) {
       ++result_.mesh.degenerate_triangles;
-      return;
+      return false;
     }
     std::vector<Triangle>& triangles = result_.mesh.triangles;
     if (triangles.size() == kMostGltfTriangles)
       document_.fail(where, "more triangles", "at most " + std::to_string(kMostGltfTriangles));
     triangles.push_back(triangle);
     if (emits_from_both_sides) double_sided_.push_back(triangles.size() - 1);
+    return true;
   }
 
   /// Materials emit from their front side, so a light of two sides is two triangles back to back. They must
@@ -190,8 +234,22 @@ class Collector {
       const glm::dvec3 offset = glm::round(normal * 0x1p20) * (0x1p-50 * largest);
       const Triangle back{{front.vertex[0] - offset, front.vertex[2] - offset, front.vertex[1] - offset},
                           front.material};
-      if (!is_degenerate(back)) triangles.push_back(back);
+      if (is_degenerate(back)) continue;
+      set_corner_attributes(result_.mesh.corners, triangles.size(),
+                            from_behind(corner_attributes_of(result_.mesh.corners, place)));
+      triangles.push_back(back);
     }
+  }
+
+  /// What a triangle's corners have, for the same one with its second and third corner exchanged.
+  static TriangleAttributes from_behind(TriangleAttributes attributes) {
+    if (attributes.normals) {
+      for (glm::dvec3& normal : *attributes.normals) normal = -normal;
+      std::swap((*attributes.normals)[1], (*attributes.normals)[2]);
+    }
+    for (std::optional<CornerCoordinates>& of_set : attributes.coordinates)
+      if (of_set) std::swap((*of_set)[1], (*of_set)[2]);
+    return attributes;
   }
 
   /// Edges are scaled first, so that their product stays within the range of a double.
@@ -205,14 +263,15 @@ class Collector {
   }
 
   GltfDocument& document_;
+  TextureStore& textures_;
   GltfFile& result_;
   const GltfNodes nodes_;
-  std::vector<std::optional<GltfSurface>> surfaces_;  ///< those that are used, by the file's index
-  std::vector<Material> materials_;                   ///< the same, the default one, then those of a colour
-  std::map<std::size_t, ColourMaterials> coloured_;   ///< by the material that the colour multiplies
-  std::vector<std::size_t> double_sided_;             ///< triangles that emit from both sides
-  std::size_t cut_out_ = 0;                           ///< triangles
-  std::size_t points_and_lines_ = 0;                  ///< primitives
+  std::vector<bool> is_read_;        ///< by the file's index of a material
+  std::vector<Material> materials_;  ///< those that are used, the default one, then those of a colour
+  std::map<std::size_t, ColourMaterials> coloured_;  ///< by the material that the colour multiplies
+  std::vector<std::size_t> double_sided_;            ///< triangles that emit from both sides
+  std::size_t cut_out_ = 0;                          ///< triangles
+  std::size_t points_and_lines_ = 0;                 ///< primitives
 };
 
 }  // namespace
@@ -220,7 +279,7 @@ class Collector {
 GltfFile load_gltf(const std::filesystem::path& file, const MeshOptions& options) {
   GltfDocument document(file, options.reach);
   GltfFile result;
-  Collector(document, result).collect();
+  Collector(document, *options.textures, result).collect();
   return result;
 }
 

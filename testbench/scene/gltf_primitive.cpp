@@ -23,6 +23,13 @@ const GltfForm kColourTargetForm{
     {"VEC3", "VEC4"},
     {GltfComponent::i8, GltfComponent::u8, GltfComponent::i16, GltfComponent::u16},
     {GltfComponent::f32}};
+const GltfForm kNormalForm{{"VEC3"}, {}, {GltfComponent::f32}};
+const GltfForm kQuantizedNormalForm{{"VEC3"}, {GltfComponent::i8, GltfComponent::i16}, {GltfComponent::f32}};
+const GltfForm kCoordinateForm{{"VEC2"}, {GltfComponent::u8, GltfComponent::u16}, {GltfComponent::f32}};
+const GltfForm kQuantizedCoordinateForm{
+    {"VEC2"},
+    {GltfComponent::i8, GltfComponent::u8, GltfComponent::i16, GltfComponent::u16},
+    {GltfComponent::i8, GltfComponent::u8, GltfComponent::i16, GltfComponent::u16, GltfComponent::f32}};
 const GltfForm kJointForm{{"VEC4"}, {}, {GltfComponent::u8, GltfComponent::u16}};
 const GltfForm kWeightForm{{"VEC4"}, {GltfComponent::u8, GltfComponent::u16}, {GltfComponent::f32}};
 
@@ -47,7 +54,7 @@ class PrimitiveReader {
         source_(document.element("meshes", place.mesh).at("primitives").at(place.primitive)),
         where_(document.named("meshes", "mesh", place.mesh) + ", primitive " +
                std::to_string(place.primitive)),
-        position_form_(document.uses("KHR_mesh_quantization") ? kQuantizedPositionForm : kPositionForm) {}
+        is_quantized_(document.uses("KHR_mesh_quantization")) {}
 
   std::optional<GltfPrimitive> read() {
     const int mode = source_.value("mode", kGltfTriangles);
@@ -59,6 +66,8 @@ class PrimitiveReader {
     decompress();
     read_positions();
     read_colours();
+    read_normals();
+    if (place_.is_textured) read_coordinates();
     if (place_.joints > 0) read_influences();
     read_triangles(mode);
     return std::move(result_);
@@ -124,8 +133,9 @@ class PrimitiveReader {
   }
 
   void read_positions() {
-    GltfNumbers positions = attribute("POSITION", position_form_);
-    add_targets("POSITION", position_form_, positions);
+    const GltfForm& form = is_quantized_ ? kQuantizedPositionForm : kPositionForm;
+    GltfNumbers positions = attribute("POSITION", form);
+    add_targets("POSITION", form, positions);
     for (std::size_t i = 0; i < vertices_; ++i) result_.positions.push_back(glm::make_vec3(positions[i]));
   }
 
@@ -142,6 +152,26 @@ class PrimitiveReader {
         colour[int(k)] = value >= 1.0 ? 1.0 : value > 0.0 ? value : 0.0;
       }
       result_.colours.push_back(colour);
+    }
+  }
+
+  void read_normals() {
+    const GltfForm& form = is_quantized_ ? kQuantizedNormalForm : kNormalForm;
+    GltfNumbers normals = attribute("NORMAL", form);
+    if (normals.width == 0) return;
+    add_targets("NORMAL", form, normals);
+    for (std::size_t i = 0; i < vertices_; ++i) result_.normals.push_back(glm::make_vec3(normals[i]));
+  }
+
+  void read_coordinates() {
+    const GltfForm& form = is_quantized_ ? kQuantizedCoordinateForm : kCoordinateForm;
+    for (std::size_t set = 0; set < result_.coordinates.size(); ++set) {
+      const std::string name = "TEXCOORD_" + std::to_string(set);
+      GltfNumbers numbers = attribute(name, form);
+      if (numbers.width == 0) continue;
+      add_targets(name, form, numbers);
+      for (std::size_t i = 0; i < vertices_; ++i)
+        result_.coordinates[set].push_back(glm::make_vec2(numbers[i]));
     }
   }
 
@@ -204,7 +234,7 @@ class PrimitiveReader {
   const GltfPrimitivePlace& place_;
   const nlohmann::json& source_;
   const std::string where_;
-  const GltfForm& position_form_;
+  const bool is_quantized_;
   std::optional<DracoPrimitive> draco_;
   std::size_t vertices_ = 0;
   GltfPrimitive result_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "testbench/gltf/gltf_document.hpp"
+#include "testbench/texture/texture.hpp"
 
 namespace testbench {
 
@@ -17,8 +18,10 @@ struct GltfInfluence {
 
 /// The triangles of a primitive, in its mesh's coordinates.
 struct GltfPrimitive {
-  std::vector<glm::dvec3> positions;                   ///< of vertices, morph targets at their weights
-  std::vector<glm::dvec4> colours;                     ///< of vertices, linear RGB and alpha; may be empty
+  std::vector<glm::dvec3> positions;  ///< of vertices, morph targets at their weights
+  std::vector<glm::dvec4> colours;    ///< of vertices, linear RGB and alpha; may be empty
+  std::vector<glm::dvec3> normals;    ///< the same, of any length; may be empty
+  std::array<std::vector<glm::dvec2>, kTextureCoordinateSets> coordinates;  ///< of textures; may be empty
   std::vector<std::vector<GltfInfluence>> influences;  ///< of vertices; empty unless joints were asked for
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
@@ -29,6 +32,7 @@ struct GltfPrimitivePlace {
   std::size_t primitive;
   std::vector<double> weights;  ///< of the mesh's morph targets
   std::size_t joints;           ///< of the skin; 0 for none
+  bool is_textured = false;     ///< whether texture coordinates are wanted
 };
 
 /// Reads a primitive of triangles, a strip or a fan; std::nullopt for points and lines, which are noted.

@@ -31,28 +31,65 @@ bool is_in_range(const Triangle& triangle) {
   return true;
 }
 
-std::size_t ColourMaterials::Hash::operator()(const glm::dvec3& colour) const {
-  const std::hash<double> hash;
-  return (hash(colour.x) * 0x9e3779b97f4a7c15u) ^ (hash(colour.y) * 0xc2b2ae3d27d4eb4fu) ^
-         (hash(colour.z) * 0x165667b19e3779f9u);
+void keep_used_textures(Scene& scene) {
+  std::vector<std::int32_t> new_index(scene.textures.size(), kNoTexture);
+  std::array<bool, kTextureCoordinateSets> is_used_set{};
+  std::vector<Texture> used;
+  for (Material& material : scene.materials)
+    for_each_texture(material.textures, [&](TextureReference& reference) {
+      if (!reference) return;
+      is_used_set[std::size_t(reference.coordinate_set)] = true;
+      std::int32_t& index = new_index[std::size_t(reference.texture)];
+      if (index == kNoTexture) {
+        index = static_cast<std::int32_t>(used.size());
+        used.push_back(std::move(scene.textures[std::size_t(reference.texture)]));
+      }
+      reference.texture = index;
+    });
+  scene.textures = std::move(used);
+  for (std::size_t set = 0; set < is_used_set.size(); ++set)
+    if (!is_used_set[set]) scene.corners.coordinates[set] = {};
 }
 
-std::int32_t ColourMaterials::index_of(const glm::dvec3& reflectance, const glm::dvec3& emission) {
-  const auto [entry, is_new] = index_of_.emplace(reflectance, static_cast<std::int32_t>(materials_.size()));
-  if (is_new) materials_.push_back({"colour" + std::to_string(index_of_.size()), reflectance, emission});
+std::size_t ColourMaterials::Hash::operator()(const glm::dvec4& colour) const {
+  const std::hash<double> hash;
+  return (hash(colour.x) * 0x9e3779b97f4a7c15u) ^ (hash(colour.y) * 0xc2b2ae3d27d4eb4fu) ^
+         (hash(colour.z) * 0x165667b19e3779f9u) ^ (hash(colour.w) * 0x27d4eb2f165667c5u);
+}
+
+std::int32_t ColourMaterials::index_of(const glm::dvec4& colour, const Material& plain) {
+  const auto [entry, is_new] = index_of_.emplace(colour, static_cast<std::int32_t>(materials_.size()));
+  if (!is_new) return entry->second;
+  Material material = plain;
+  material.name = "colour" + std::to_string(index_of_.size());
+  material.reflectance = glm::dvec3(colour);
+  material.alpha = colour.a;
+  materials_.push_back(std::move(material));
   return entry->second;
+}
+
+void MeshBuilder::add_triangle(const Triangle& triangle, const PolygonAttributes& attributes,
+                               const std::array<std::uint32_t, 3>& corners) {
+  if (is_degenerate(triangle)) {
+    ++mesh_.degenerate_triangles;
+    return;
+  }
+  TriangleAttributes of_triangle;
+  if (!attributes.normals.empty())
+    of_triangle.normals = corner_normals(
+        triangle.vertex,
+        {attributes.normals[corners[0]], attributes.normals[corners[1]], attributes.normals[corners[2]]});
+  for (std::size_t set = 0; set < attributes.coordinates.size(); ++set)
+    if (const std::vector<glm::dvec2>& all = attributes.coordinates[set]; !all.empty())
+      of_triangle.coordinates[set] = corner_coordinates({all[corners[0]], all[corners[1]], all[corners[2]]});
+  set_corner_attributes(mesh_.corners, mesh_.triangles.size(), of_triangle);
+  mesh_.triangles.push_back(triangle);
 }
 
 void require_triangles(const Mesh& mesh, const std::filesystem::path& file) {
   if (!mesh.triangles.empty()) return;
   throw InputError(file.string() + ": found no triangle (" + std::to_string(mesh.degenerate_triangles) +
                    " without area); allowed: a mesh of one triangle or more");
-}
-
-bool is_reflectance(const glm::dvec3& colour) {
-  for (int channel = 0; channel < 3; ++channel)
-    if (!(colour[channel] >= 0.0 && colour[channel] <= 1.0)) return false;
-  return true;
 }
 
 void keep_used_materials(const std::vector<Material>& all, Mesh& mesh) {

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "testbench/files/input_file.hpp"
-#include "testbench/scene/mtl_file.hpp"
-#include "testbench/scene/text_lines.hpp"
+#include "testbench/files/text_lines.hpp"
+#include "testbench/material/mtl_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -21,8 +21,11 @@ constexpr std::int32_t kNoMaterial = -1;
 /// What the first pass over an OBJ text finds: all that faces refer to, before or behind them.
 struct ObjContent {
   std::vector<glm::dvec3> vertices;
-  std::vector<glm::dvec3> colours;  ///< of the vertices, with NaN for one without; empty if none has one
+  std::vector<glm::dvec3> colours;      ///< of the vertices, with NaN for one without; empty if none has one
+  std::vector<glm::dvec3> normals;      ///< zero for one that is no direction
+  std::vector<glm::dvec2> coordinates;  ///< of textures, from the upper left; empty if no material has any
   std::vector<MtlMaterial> materials;
+  std::vector<std::filesystem::path> folders;  ///< of the materials' files
   std::map<std::string, std::int32_t, std::less<>> material_of_name;
   std::size_t faces = 0;
   Notes notes;
@@ -45,7 +48,14 @@ class ObjPlace {
   const LineReader& lines_;
 };
 
-/// The first pass: vertices and material libraries.
+/// Reads the numbers of a line as far as they go; returns how many, at most `size`.
+int read_numbers(std::string_view line, double* numbers, int size) {
+  int count = 0;
+  while (count < size && parse_number(take_word(line), numbers[count])) ++count;
+  return count;
+}
+
+/// The first pass: vertices, normals and material libraries.
 class ObjContentReader {
  public:
   ObjContentReader(const std::filesystem::path& file, std::string_view text, const FileReach& reach)
@@ -59,6 +69,8 @@ class ObjContentReader {
         add_vertex(line);
       else if (keyword == "f")
         ++content_.faces;
+      else if (keyword == "vn")
+        add_normal(line);
       else if (keyword == "mtllib")
         add_libraries(line);
     }
@@ -82,6 +94,15 @@ class ObjContentReader {
     content_.vertices.emplace_back(numbers[0], numbers[1], numbers[2]);
     if (count >= 6) add_colour({numbers[3], numbers[4], numbers[5]});
     if (count < 6 && !content_.colours.empty()) content_.colours.emplace_back(NAN);
+  }
+
+  void add_normal(std::string_view line) {
+    glm::dvec3 normal(0.0);
+    double numbers[3];
+    if (read_numbers(line, numbers, 3) == 3) normal = {numbers[0], numbers[1], numbers[2]};
+    if (normal == glm::dvec3(0.0))
+      content_.notes.add_at("a normal that is no direction is left out", [this] { return place_.text(); });
+    content_.normals.push_back(normal);
   }
 
   /// A program that has no colour for a vertex may write nan.
@@ -134,6 +155,7 @@ class ObjContentReader {
       content_.material_of_name.emplace(name, index);
       content_.material_of_name.emplace(trimmed(without_comment(name)), index);
       content_.materials.push_back(std::move(material));
+      content_.folders.push_back(library.parent_path());
     }
   }
 
@@ -143,6 +165,30 @@ class ObjContentReader {
   ObjPlace place_;
   ObjContent content_;
   std::set<std::filesystem::path> read_libraries_;
+};
+
+/// Reads the texture coordinates, of which OBJ counts v from the lower edge of an image: a pass of their own,
+/// for the files whose materials have textures.
+void read_coordinates(const std::filesystem::path& file, std::string_view text, ObjContent& content) {
+  LineReader lines(text);
+  const ObjPlace place(file, lines);
+  while (lines.next()) {
+    std::string_view line = lines.line();
+    if (take_word(line) != "vt") continue;
+    double numbers[2] = {0.0, 0.0};
+    if (read_numbers(line, numbers, 2) == 0)
+      content.notes.add_at("a texture coordinate that is no number is 0", [&] { return place.text(); });
+    content.coordinates.emplace_back(numbers[0], 1.0 - numbers[1]);
+  }
+}
+
+/// The indices of a face's corner, counted from 0.
+struct ObjCorner {
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  std::size_t vertex = kNone;
+  std::size_t coordinate = kNone;
+  std::size_t normal = kNone;
 };
 
 /// The second pass: faces and their materials.
@@ -160,12 +206,14 @@ class ObjFaceReader {
     for (const MtlMaterial& material : content.materials) materials_.push_back(material.material);
     materials_.push_back(options.material.value_or(Material{"default", glm::dvec3(kDefaultReflectance)}));
     default_material_ = static_cast<std::int32_t>(content.materials.size());
+    for (const MtlMaterial& material : content.materials) is_textured_.push_back(!material.textures.empty());
+    is_textured_.push_back(has_texture(materials_.back()));
   }
 
   void read() {
     mesh_.triangles.reserve(content_.faces);
     while (lines_.next()) read_line(lines_.line());
-    note_left_out_of_materials();
+    finish_used_materials();
     keep_used_materials(materials_, mesh_);
   }
 
@@ -176,6 +224,10 @@ class ObjFaceReader {
       add_face(line);
     else if (keyword == "v")
       ++vertices_so_far_;
+    else if (keyword == "vt")
+      ++coordinates_so_far_;
+    else if (keyword == "vn")
+      ++normals_so_far_;
     else if (keyword == "usemtl")
       use_material(line);
     else if (keyword == "p")
@@ -199,36 +251,75 @@ class ObjFaceReader {
     corners_.clear();
     for (std::string_view corner = take_word(line); !corner.empty(); corner = take_word(line)) {
       if (corner.front() == '#') break;
-      corners_.push_back(vertex_index(corner));
-      polygon_.push_back(content_.vertices[corners_.back()]);
+      corners_.push_back(corner_of(corner));
+      polygon_.push_back(content_.vertices[corners_.back().vertex]);
     }
     if (polygon_.size() < 3)
       place_.fail("face", std::to_string(polygon_.size()) + " corners", "3 corners or more");
-    builder_.add_polygon(polygon_, material_of_face(), [this] { return place_.text(); });
+    const std::int32_t material = material_of_face();
+    collect_attributes(std::size_t(material) < is_textured_.size() && is_textured_[std::size_t(material)]);
+    builder_.add_polygon(polygon_, material, attributes_, [this] { return place_.text(); });
   }
 
-  /// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0.
-  std::size_t vertex_index(std::string_view corner) const {
-    const char* const end = corner.data() + corner.size();
+  /// A corner "v", "v/vt", "v//vn" or "v/vt/vn".
+  ObjCorner corner_of(std::string_view text) {
+    const char* const end = text.data() + text.size();
     std::int64_t index = 0;
-    auto [rest, error] = std::from_chars(corner.data(), end, index);
-    const auto vertices = static_cast<std::int64_t>(content_.vertices.size());
-    const std::int64_t place = index < 0 ? static_cast<std::int64_t>(vertices_so_far_) + index : index - 1;
-    if (error != std::errc() || index == 0 || place < 0 || place >= vertices || !are_indices(rest, end))
-      fail_at_corner(corner);
-    return static_cast<std::size_t>(place);
+    auto [rest, error] = std::from_chars(text.data(), end, index);
+    ObjCorner corner;
+    corner.vertex = place_of(index, vertices_so_far_, content_.vertices.size());
+    if (error != std::errc() || corner.vertex == ObjCorner::kNone || !read_indices(rest, end, corner))
+      fail_at_corner(text);
+    return corner;
   }
 
-  /// Whether the text is empty or at most two whole numbers, which may be missing, each behind a slash.
-  static bool are_indices(const char* begin, const char* end) {
+  /// The place that an index means, from 1 or back from the last one; kNone if there is no such.
+  static std::size_t place_of(std::int64_t index, std::size_t so_far, std::size_t size) {
+    const std::int64_t place = index < 0 ? static_cast<std::int64_t>(so_far) + index : index - 1;
+    return index == 0 || place < 0 || place >= static_cast<std::int64_t>(size)
+               ? ObjCorner::kNone
+               : static_cast<std::size_t>(place);
+  }
+
+  /// Reads the indices behind the vertex: whether the text is empty or at most two whole numbers, which may
+  /// be missing, each behind a slash.
+  bool read_indices(const char* begin, const char* end, ObjCorner& corner) {
     int slashes = 0;
     while (begin != end) {
       if (*begin++ != '/' || ++slashes > 2) return false;
+      const char* const first = begin;
       const char* const number = begin != end && *begin == '-' ? begin + 1 : begin;
       begin = std::find_if(number, end, [](char digit) { return digit < '0' || digit > '9'; });
       if (begin == number && number[-1] == '-') return false;
+      if (begin == number) continue;
+      if (slashes == 1 && !content_.coordinates.empty())
+        corner.coordinate = attribute_place(first, begin, coordinates_so_far_, content_.coordinates.size());
+      if (slashes == 2 && !content_.normals.empty())
+        corner.normal = attribute_place(first, begin, normals_so_far_, content_.normals.size());
     }
     return true;
+  }
+
+  std::size_t attribute_place(const char* begin, const char* end, std::size_t so_far, std::size_t size) {
+    std::int64_t index = 0;
+    const bool is_number = std::from_chars(begin, end, index).ec == std::errc();
+    const std::size_t place = is_number ? place_of(index, so_far, size) : ObjCorner::kNone;
+    if (place == ObjCorner::kNone) note("an index of no texture coordinate or normal is left out");
+    return place;
+  }
+
+  /// What all corners have, of which texture coordinates count if the material has textures.
+  void collect_attributes(bool is_textured) {
+    attributes_.clear();
+    const auto have_all = [this](std::size_t ObjCorner::*place) {
+      return std::all_of(corners_.begin(), corners_.end(),
+                         [&](const ObjCorner& corner) { return corner.*place != ObjCorner::kNone; });
+    };
+    if (!content_.normals.empty() && have_all(&ObjCorner::normal))
+      for (const ObjCorner& corner : corners_) attributes_.normals.push_back(content_.normals[corner.normal]);
+    if (is_textured && have_all(&ObjCorner::coordinate))
+      for (const ObjCorner& corner : corners_)
+        attributes_.coordinates[0].push_back(content_.coordinates[corner.coordinate]);
   }
 
   [[noreturn]] void fail_at_corner(std::string_view corner) const {
@@ -244,8 +335,8 @@ class ObjFaceReader {
   std::int32_t material_of_face() {
     const bool is_coloured =
         !content_.colours.empty() &&
-        std::all_of(corners_.begin(), corners_.end(), [this](std::size_t vertex) {
-          return vertex < content_.colours.size() && !std::isnan(content_.colours[vertex].x);
+        std::all_of(corners_.begin(), corners_.end(), [this](const ObjCorner& corner) {
+          return corner.vertex < content_.colours.size() && !std::isnan(content_.colours[corner.vertex].x);
         });
     if (material_ != kNoMaterial) {
       if (is_coloured) note("vertex colours of a face with a material are left out");
@@ -253,9 +344,9 @@ class ObjFaceReader {
     }
     if (is_coloured) {
       glm::dvec3 sum(0.0);
-      for (const std::size_t vertex : corners_) sum += content_.colours[vertex];
+      for (const ObjCorner& corner : corners_) sum += content_.colours[corner.vertex];
       const glm::dvec3 colour = sum / double(corners_.size());
-      if (is_reflectance(colour)) return colour_materials_.index_of(colour, glm::dvec3(0.0));
+      if (is_reflectance(colour)) return colour_materials_.index_of(glm::dvec4(colour, 1.0), Material());
       note("vertex colours outside 0 to 1 are left out");
     }
     if (!options_.material) mesh_.note_default_material([this] { return why_default(); });
@@ -270,11 +361,17 @@ class ObjFaceReader {
     return place_.text() + ": no material" + (material_name_.empty() ? "" : " " + in_quotes(material_name_));
   }
 
-  void note_left_out_of_materials() {
+  /// Reads the textures of the materials that faces have, and notes what of these is left out.
+  void finish_used_materials() {
     std::vector<bool> is_used(materials_.size(), false);
     for (const Triangle& triangle : mesh_.triangles) is_used[std::size_t(triangle.material)] = true;
-    for (std::size_t i = 0; i < content_.materials.size(); ++i)
-      if (is_used[i]) mesh_.notes.add(content_.materials[i].notes);
+    for (std::size_t i = 0; i < content_.materials.size(); ++i) {
+      if (!is_used[i]) continue;
+      const MtlTextureFiles files{content_.folders[i], options_.reach, *options_.textures,
+                                  options_.must_have_textures};
+      mesh_.notes.add(content_.materials[i].notes);
+      load_mtl_textures(content_.materials[i].textures, files, materials_[i], mesh_.notes);
+    }
   }
 
   const ObjContent& content_;
@@ -288,9 +385,13 @@ class ObjFaceReader {
   std::int32_t default_material_ = 0;
   std::int32_t material_ = kNoMaterial;
   std::string material_name_;
+  std::vector<bool> is_textured_;  ///< by material of the MTL files, then the default one
   std::size_t vertices_so_far_ = 0;
+  std::size_t coordinates_so_far_ = 0;
+  std::size_t normals_so_far_ = 0;
   Polygon polygon_;
-  std::vector<std::size_t> corners_;
+  std::vector<ObjCorner> corners_;
+  PolygonAttributes attributes_;
 };
 
 }  // namespace
@@ -300,10 +401,16 @@ Mesh load_obj_mesh(const std::filesystem::path& obj_file, const MeshOptions& opt
   const std::string text = read_input_file(obj_file, "a readable OBJ file");
   require_no_utf_16(obj_file, text);
   ObjContent content = ObjContentReader(obj_file, text, options.reach).read();
+  const bool has_textures =
+      std::any_of(content.materials.begin(), content.materials.end(),
+                  [](const MtlMaterial& material) { return !material.textures.empty(); }) ||
+      (options.material && has_texture(*options.material));
+  if (has_textures) read_coordinates(obj_file, text, content);
   Mesh mesh;
   mesh.notes = std::move(content.notes);
   ObjFaceReader(obj_file, text, content, options, mesh).read();
   require_triangles(mesh, obj_file);
+  complete_corner_attributes(mesh.corners, mesh.triangles.size());
   return mesh;
 }
 

@@ -8,11 +8,12 @@ namespace testbench {
 
 /// Reads an OBJ file and the MTL files that it names (relative to it; see scan_materials()).
 ///
-/// Faces have any number of corners, see triangulate(). Indices of texture coordinates and normals are
-/// checked for their form only, since both are not used. A face without a material, or with one that no MTL
-/// file defines, has the average colour of its vertices (`v x y z r g b`, taken as linear reflectance) if all
-/// have one, otherwise the material of `options`, otherwise the default one (kDefaultReflectance). Noted as
-/// left out are points, lines, curves and surfaces, missing MTL files, vertex colours of faces that have a
+/// Faces have any number of corners, see triangulate(). Normals are kept (corner_normals()), texture
+/// coordinates for materials with textures; a face has none of them unless each of its corners has. Smoothing
+/// groups are not looked at: a face without normals is flat. A face without a material, or with one that no
+/// MTL file defines, has the average colour of its vertices (`v x y z r g b`, taken as linear reflectance) if
+/// all have one, otherwise the material of `options`, otherwise the default one (kDefaultReflectance). Noted
+/// as left out are points, lines, curves and surfaces, missing MTL files, vertex colours of faces that have a
 /// material, and what the materials in use leave out.
 ///
 /// A name of a file or a material is the rest of its line; blanks in it are allowed. If no such file exists,

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <iterator>
 
-#include "testbench/scene/text_lines.hpp"
+#include "testbench/files/text_lines.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "testbench/files/input_file.hpp"
+#include "testbench/files/text_lines.hpp"
 #include "testbench/scene/ply_header.hpp"
-#include "testbench/scene/text_lines.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -130,6 +130,14 @@ ThreePlaces colour_places_of(const PlyElement& element) {
   return places ? places : places_of(element, {"diffuse_red", "diffuse_green", "diffuse_blue"});
 }
 
+/// The places of one of several names for a texture coordinate.
+std::optional<std::array<std::size_t, 2>> coordinate_places_of(const PlyElement& element) {
+  constexpr const char* kNames[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
+  for (const auto& [u, v] : kNames)
+    if (const ThreePlaces places = places_of(element, {u, v, v})) return {{(*places)[0], (*places)[1]}};
+  return std::nullopt;
+}
+
 class PlyReader {
  public:
   PlyReader(const std::filesystem::path& file, std::string_view text, const MeshOptions& options, Mesh& mesh)
@@ -199,6 +207,9 @@ class PlyReader {
     const ThreePlaces xyz = places_of(element, {"x", "y", "z"});
     if (!xyz) fail_in_header("no x, y and z of element vertex", "all three");
     const ThreePlaces colour = colour_places_of(element);
+    const ThreePlaces normal = places_of(element, {"nx", "ny", "nz"});
+    const bool is_textured = has_texture(materials_.front());
+    const auto coordinate = is_textured ? coordinate_places_of(element) : std::nullopt;
     choose_used(element, xyz, colour);
     vertices_.reserve(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -209,6 +220,10 @@ class PlyReader {
           body_.fail("coordinate " + std::to_string(vertex[axis]), "finite numbers of at most 1e100");
       vertices_.push_back(vertex);
       if (colour) colours_.push_back(colour_in(element, *colour));
+      if (normal)
+        normals_.emplace_back(scalars_[(*normal)[0]], scalars_[(*normal)[1]], scalars_[(*normal)[2]]);
+      // PLY's v grows upwards by convention, as OBJ's.
+      if (coordinate) coordinates_.emplace_back(scalars_[(*coordinate)[0]], 1.0 - scalars_[(*coordinate)[1]]);
     }
   }
 
@@ -259,8 +274,17 @@ class PlyReader {
     if (!colour && !colours_.empty()) colour = average_colour();
     if (!colour && !options_.material) mesh_.note_default_material([&] { return where() + ": no colour"; });
     const std::int32_t material =
-        colour ? colour_materials_.index_of(*colour, glm::dvec3(0.0)) : std::int32_t{0};
-    builder_.add_polygon(polygon_, material, where);
+        colour ? colour_materials_.index_of(glm::dvec4(*colour, 1.0), Material()) : std::int32_t{0};
+    collect_attributes();
+    builder_.add_polygon(polygon_, material, attributes_, where);
+  }
+
+  void collect_attributes() {
+    attributes_.clear();
+    for (const double index : entries_) {
+      if (!normals_.empty()) attributes_.normals.push_back(normals_[std::size_t(index)]);
+      if (!coordinates_.empty()) attributes_.coordinates[0].push_back(coordinates_[std::size_t(index)]);
+    }
   }
 
   [[noreturn]] void fail_at_index(double index) const {
@@ -286,11 +310,14 @@ class PlyReader {
   std::vector<Material> materials_;
   ColourMaterials colour_materials_;
   std::vector<glm::dvec3> vertices_;
-  std::vector<glm::dvec3> colours_;  ///< of the vertices, or empty
-  std::vector<bool> is_used_;        ///< by property, of the element that is read
-  std::vector<double> scalars_;      ///< by property, of the element that was read last
-  std::vector<double> entries_;      ///< of its list of vertices
+  std::vector<glm::dvec3> colours_;      ///< of the vertices, or empty
+  std::vector<glm::dvec3> normals_;      ///< the same
+  std::vector<glm::dvec2> coordinates_;  ///< the same, of textures
+  std::vector<bool> is_used_;            ///< by property, of the element that is read
+  std::vector<double> scalars_;          ///< by property, of the element that was read last
+  std::vector<double> entries_;          ///< of its list of vertices
   Polygon polygon_;
+  PolygonAttributes attributes_;
 };
 
 }  // namespace
@@ -301,6 +328,7 @@ Mesh load_ply_mesh(const std::filesystem::path& file, const MeshOptions& options
   Mesh mesh;
   PlyReader(file, without_byte_order_mark(text), options, mesh).read();
   require_triangles(mesh, file);
+  complete_corner_attributes(mesh.corners, mesh.triangles.size());
   return mesh;
 }
 

@@ -61,10 +61,16 @@ std::optional<std::size_t> fan_start(const Polygon& polygon, const glm::dvec3& n
   return std::nullopt;
 }
 
+/// A point that GLU is given or makes, and the corner of the polygon that it is or lies nearest to.
+struct TessellationPoint {
+  glm::dvec3 place;
+  std::uint32_t corner;
+};
+
 /// What GLU's callbacks work on.
 struct Tessellation {
-  std::deque<glm::dvec3> points;  ///< a deque, because GLU keeps pointers to them
-  std::vector<const glm::dvec3*> corners;
+  std::deque<TessellationPoint> points;  ///< a deque, because GLU keeps pointers to them
+  std::vector<const TessellationPoint*> corners;
   bool crosses_itself = false;
   GLenum error = 0;
 };
@@ -73,16 +79,17 @@ struct Tessellation {
 void on_edge_flag(GLboolean) {}
 
 void on_vertex(void* vertex, void* tessellation) {
-  static_cast<Tessellation*>(tessellation)->corners.push_back(static_cast<const glm::dvec3*>(vertex));
+  static_cast<Tessellation*>(tessellation)->corners.push_back(static_cast<const TessellationPoint*>(vertex));
 }
 
 /// Called where vertices coincide, and where edges cross.
-void on_combine(const GLdouble place[3], void* vertices[4], const GLfloat[4], void** result,
+void on_combine(const GLdouble place[3], void* vertices[4], const GLfloat weights[4], void** result,
                 void* tessellation) {
   auto& state = *static_cast<Tessellation*>(tessellation);
   const glm::dvec3 point(place[0], place[1], place[2]);
-  if (point != *static_cast<const glm::dvec3*>(vertices[0])) state.crosses_itself = true;
-  state.points.push_back(point);
+  const auto nearest = std::size_t(std::max_element(weights, weights + 4) - weights);
+  if (point != static_cast<const TessellationPoint*>(vertices[0])->place) state.crosses_itself = true;
+  state.points.push_back({point, static_cast<const TessellationPoint*>(vertices[nearest])->corner});
   *result = &state.points.back();
 }
 
@@ -108,8 +115,8 @@ void run_glu(const glm::dvec3& normal, Tessellation& state) {
   gluTessBeginContour(glu.get());
   const std::size_t count = state.points.size();  // on_combine adds more
   for (std::size_t i = 0; i < count; ++i) {
-    glm::dvec3& point = state.points[i];
-    GLdouble place[3] = {point.x, point.y, point.z};
+    TessellationPoint& point = state.points[i];
+    GLdouble place[3] = {point.place.x, point.place.y, point.place.z};
     gluTessVertex(glu.get(), place, &point);
   }
   gluTessEndContour(glu.get());
@@ -128,14 +135,18 @@ int exponent_of(const Polygon& polygon) {
 
 void tessellate(const Polygon& polygon, const glm::dvec3& normal, PolygonTriangles& result) {
   Tessellation state;
-  state.points.assign(polygon.begin(), polygon.end());
+  for (const glm::dvec3& point : polygon)
+    state.points.push_back({point, static_cast<std::uint32_t>(state.points.size())});
   const double length = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
   run_glu(length > 0.0 ? normal / length : normal, state);
   if (state.error == GLU_OUT_OF_MEMORY)
     throw RunError("a polygon of " + std::to_string(polygon.size()) +
                    " vertices cannot be triangulated: out of memory");
-  for (std::size_t i = 0; i + 2 < state.corners.size(); i += 3)
-    result.triangles.push_back({*state.corners[i], *state.corners[i + 1], *state.corners[i + 2]});
+  for (std::size_t i = 0; i + 2 < state.corners.size(); i += 3) {
+    const TessellationPoint* const* const of = &state.corners[i];
+    result.triangles.push_back({of[0]->place, of[1]->place, of[2]->place});
+    result.corners.push_back({of[0]->corner, of[1]->corner, of[2]->corner});
+  }
   if (state.crosses_itself) result.crosses_itself = true;
 }
 
@@ -144,9 +155,12 @@ void triangulate_scaled(const Polygon& polygon, PolygonTriangles& result) {
   const glm::dvec3 normal = newell_normal(polygon);
   const std::optional<std::size_t> start = fan_start(polygon, normal);
   if (!start) return tessellate(polygon, normal, result);
-  for (std::size_t i = 1; i + 1 < count; ++i)
-    result.triangles.push_back(
-        {polygon[*start], polygon[(*start + i) % count], polygon[(*start + i + 1) % count]});
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    const std::size_t corners[3] = {*start, (*start + i) % count, (*start + i + 1) % count};
+    result.triangles.push_back({polygon[corners[0]], polygon[corners[1]], polygon[corners[2]]});
+    result.corners.push_back(
+        {std::uint32_t(corners[0]), std::uint32_t(corners[1]), std::uint32_t(corners[2])});
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -11,10 +12,18 @@ using Polygon = std::vector<glm::dvec3>;
 /// The triangles of a polygon. All face the way the polygon does.
 struct PolygonTriangles {
   std::vector<std::array<glm::dvec3, 3>> triangles;
+  /// Of each triangle the corners of the polygon that it has; where edges cross, the corner that is nearest.
+  std::vector<std::array<std::uint32_t, 3>> corners;
   bool crosses_itself = false;
+
+  void clear() {
+    triangles.clear();
+    corners.clear();
+    crosses_itself = false;
+  }
 };
 
-/// Appends the triangles of a polygon to `result.triangles`; some may have no area. A convex polygon is cut
+/// Appends the triangles of a polygon to `result`; some may have no area. A convex polygon is cut
 /// into a fan from its first vertex. A polygon of at most 255 vertices, of which one sees all others, is cut
 /// into a fan from the first of those. Any other is projected along the axis in which it has the least extent
 /// and tessellated there (GLU, sweep line); where it crosses itself, what its outline goes around is filled.

@@ -70,6 +70,7 @@ std::size_t remove_repeated_triangles(Scene& scene) {
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
     if (!is_removed[i]) scene.triangles[next++] = scene.triangles[i];
   scene.triangles.resize(next);
+  remove_corner_attributes(scene.corners, is_removed);
   return removed;
 }
 

@@ -7,17 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "testbench/material/light.hpp"
+#include "testbench/material/material.hpp"
+#include "testbench/scene/corner_attributes.hpp"
 #include "testbench/system/notes.hpp"
+#include "testbench/texture/texture.hpp"
 
 namespace testbench {
-
-/// A Lambertian surface. It emits from its front side only, the side from which its vertices run
-/// counter-clockwise.
-struct Material {
-  std::string name;
-  glm::dvec3 reflectance{0.0};  ///< linear RGB, each in [0, 1]
-  glm::dvec3 emission{0.0};     ///< radiance, linear RGB, not negative
-};
 
 struct Triangle {
   glm::dvec3 vertex[3];
@@ -51,7 +47,11 @@ struct Scene {
   Camera camera;
   FilmSize film;
   std::vector<Material> materials;
-  std::vector<Triangle> triangles;           ///< none of zero area
+  std::vector<Triangle> triangles;  ///< none of zero area
+  CornerAttributes corners;         ///< of the triangles
+  std::vector<Texture> textures;    ///< that the materials use
+  Environment environment;
+  std::vector<Light> lights;                 ///< that are no triangles
   std::size_t degenerate_triangles = 0;      ///< number of triangles of zero area that the loader dropped
   Notes notes;                               ///< what the loader left out or replaced
   std::vector<std::filesystem::path> files;  ///< that the loader read or that these name

@@ -8,13 +8,15 @@
 #include <string>
 
 #include "testbench/files/input_file.hpp"
+#include "testbench/files/text_lines.hpp"
 #include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/obj_mesh.hpp"
 #include "testbench/scene/ply_mesh.hpp"
 #include "testbench/scene/repeated_triangles.hpp"
 #include "testbench/scene/table_reader.hpp"
-#include "testbench/scene/text_lines.hpp"
+#include "testbench/scene/toml_light.hpp"
+#include "testbench/scene/toml_material.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/nesting.hpp"
 
@@ -119,15 +121,12 @@ GltfFile load_mesh_file(const std::filesystem::path& file, const MeshOptions& op
 }
 
 /// The material that faces without one get.
-std::optional<Material> read_material(const TableReader& mesh) {
+std::optional<Material> read_material(const TableReader& mesh, const TextureFiles& files) {
   if (!mesh.has("material")) return std::nullopt;
   if (is_gltf(mesh.text("file")))
     mesh.fail_at("material", "a material for a glTF file",
                  "one for OBJ and PLY files; glTF has a default of its own");
-  const TableReader table = mesh.table("material");
-  table.require_only({"reflectance", "emission"});
-  return Material{"material", table.colour_or_black("reflectance", 1.0, "three numbers from 0 to 1"),
-                  table.colour_or_black("emission", kMaxEmission, "three numbers from 0 to 1e12")};
+  return read_toml_material(mesh.table("material"), files);
 }
 
 Camera moved(Camera camera, const glm::dmat4& transform) {
@@ -137,17 +136,27 @@ Camera moved(Camera camera, const glm::dmat4& transform) {
   return camera;
 }
 
+/// What a triangle's corners have, when its mesh is moved.
+TriangleAttributes moved(TriangleAttributes attributes, const glm::dmat4& transform) {
+  const glm::dmat3 of_normals = normal_transform(glm::dmat3(transform));
+  if (attributes.normals)
+    for (glm::dvec3& normal : *attributes.normals)
+      if (normal != glm::dvec3(0.0)) normal = glm::normalize(of_normals * normal);
+  return attributes;
+}
+
 /// Adds the mesh file that `table` names.
 /// @param camera set to the file's camera if it has one and `camera` is empty
 /// Returns whether the mesh has faces of the default material.
 bool add_mesh(const TableReader& table, const std::filesystem::path& directory, const FileReach& reach,
-              Scene& scene, std::optional<Camera>& camera) {
+              const std::shared_ptr<TextureStore>& textures, Scene& scene, std::optional<Camera>& camera) {
   table.require_only({"file", "scale", "rotate_degrees", "translate", "material"});
   const bool is_moved = table.has("scale") || table.has("rotate_degrees") || table.has("translate");
   const glm::dmat4 transform = read_transform(table);
   const std::filesystem::path mesh_file = directory / table.text("file");
   reach.require(mesh_file, table.where_is("file") + ": mesh.file");
-  const GltfFile file = load_mesh_file(mesh_file, {reach, read_material(table)});
+  const GltfFile file =
+      load_mesh_file(mesh_file, {reach, read_material(table, {directory, reach, *textures}), textures, true});
   if (file.camera && !camera) camera = moved(file.camera->camera, transform);
   const Mesh& mesh = file.mesh;
   const auto first_material = static_cast<std::int32_t>(scene.materials.size());
@@ -155,7 +164,9 @@ bool add_mesh(const TableReader& table, const std::filesystem::path& directory, 
   scene.degenerate_triangles += mesh.degenerate_triangles;
   scene.notes.add(mesh.notes);
   scene.triangles.reserve(scene.triangles.size() + mesh.triangles.size());
-  for (Triangle triangle : mesh.triangles) {
+  for (const Light& light : mesh.lights) scene.lights.push_back(moved(light, transform));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    Triangle triangle = mesh.triangles[i];
     triangle.material += first_material;
     if (is_moved) {
       for (glm::dvec3& vertex : triangle.vertex) vertex = glm::dvec3(transform * glm::dvec4(vertex, 1.0));
@@ -168,6 +179,9 @@ bool add_mesh(const TableReader& table, const std::filesystem::path& directory, 
         continue;
       }
     }
+    if (!mesh.corners.is_empty())
+      set_corner_attributes(scene.corners, scene.triangles.size(),
+                            moved(corner_attributes_of(mesh.corners, i), transform));
     scene.triangles.push_back(triangle);
   }
   return mesh.has_default_material;
@@ -202,12 +216,15 @@ OfMeshes add_meshes(const toml::table& root, const std::filesystem::path& file, 
                 "one [[mesh]] table or more");
   }
   const FileReach reach(file.parent_path(), is_outside_allowed);
+  const auto textures = std::make_shared<TextureStore>();
   OfMeshes result;
   for (const toml::node& node : *meshes) {
-    if (add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), reach, scene,
-                 result.camera))
+    if (add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), reach, textures,
+                 scene, result.camera))
       result.has_default_material = true;
   }
+  scene.textures = textures->take();
+  read_toml_lights(root, file, reach, scene);
   scene.files.insert(scene.files.end(), reach.files().begin(), reach.files().end());
   return result;
 }
@@ -228,7 +245,8 @@ void add_light_with_note(Scene& scene, const std::filesystem::path& file) {
 /// The scene of a mesh file that is opened directly, without a scene.toml.
 Scene mesh_scene(const std::filesystem::path& file, bool is_outside_allowed) {
   const FileReach reach(file.parent_path(), is_outside_allowed);
-  GltfFile mesh_file = load_mesh_file(file, {reach, std::nullopt});
+  const MeshOptions options{reach, std::nullopt};
+  GltfFile mesh_file = load_mesh_file(file, options);
   Scene scene;
   scene.files = reach.files();
   scene.files.push_back(file);
@@ -236,6 +254,9 @@ Scene mesh_scene(const std::filesystem::path& file, bool is_outside_allowed) {
   scene.film = {kDefaultFilmSide, kDefaultFilmSide};
   scene.materials = std::move(mesh_file.mesh.materials);
   scene.triangles = std::move(mesh_file.mesh.triangles);
+  scene.corners = std::move(mesh_file.mesh.corners);
+  scene.lights = std::move(mesh_file.mesh.lights);
+  scene.textures = options.textures->take();
   scene.degenerate_triangles = mesh_file.mesh.degenerate_triangles;
   scene.notes = std::move(mesh_file.mesh.notes);
   if (mesh_file.camera) {
@@ -253,7 +274,7 @@ Scene mesh_scene(const std::filesystem::path& file, bool is_outside_allowed) {
 /// The scene of a scene.toml.
 Scene toml_scene(const std::filesystem::path& file, bool is_outside_allowed) {
   const toml::table root = parse_toml(file);
-  TableReader(file.string(), "", root).require_only({"camera", "film", "mesh"});
+  TableReader(file.string(), "", root).require_only({"camera", "film", "mesh", "environment", "light"});
 
   Scene scene;
   scene.files = {file};
@@ -277,9 +298,11 @@ Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
   const std::filesystem::path file = scene_path(path);
   Scene scene = has_suffix(file, {".toml"}) ? toml_scene(file, is_outside_allowed)
                                             : mesh_scene(file, is_outside_allowed);
+  complete_corner_attributes(scene.corners, scene.triangles.size());
   scene.notes.add("a triangle without area is left out", file.string(), scene.degenerate_triangles);
   scene.notes.add("a triangle that repeats another one is left out", file.string(),
                   remove_repeated_triangles(scene));
+  keep_used_textures(scene);
   require_renderable(scene, file.string());
   return scene;
 }

@@ -18,12 +18,12 @@ namespace testbench {
 ///               vertical_fov_degrees = 40    or  focal_length = 0.035 and film_height = 0.025 (same unit)
 ///     [film]    width, height = pixels       optional, default 480 x 480
 ///     [[mesh]]  file = "box.obj"             or .ply, .gltf, .glb; relative to the .toml file
-///               material = {reflectance = [r, g, b], emission = [r, g, b]}    optional, of faces for which
-///               an
-///                                            OBJ or PLY file has none; reflectance 0.8 without this key; a
-///                                            colour that is missing in it is 0
+///               material = {reflectance = [r, g, b], ...}    optional, of faces for which an OBJ or PLY
+///                                            file has none; reflectance 0.8 without this key, 0 if it is
+///                                            missing in it; material_keys() has all keys
 ///               scale = s                    optional, then rotate_degrees = [x, y, z] about the x, then the
 ///               y, then the translate = [x, y, z]        z axis, then translate
+///     [environment], [[light]]               optional, see read_toml_lights()
 ///
 /// Triangles without area and triangles that repeat another one are left out. What was left out or replaced
 /// is in the scene's notes.

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "testbench/scene/mesh.hpp"
 #include "testbench/scene/scene.hpp"
@@ -30,7 +31,7 @@ inline constexpr double kLargestDouble = std::numeric_limits<double>::max();
   throw InputError(line);
 }
 
-inline std::string joined(std::initializer_list<const char*> words) {
+inline std::string joined(const std::vector<const char*>& words) {
   std::string result;
   for (const char* word : words) result += (result.empty() ? "" : ", ") + std::string(word);
   return result;
@@ -42,7 +43,7 @@ class TableReader {
   TableReader(std::string file, std::string name, const toml::table& table)
       : file_(std::move(file)), name_(std::move(name)), table_(table) {}
 
-  void require_only(std::initializer_list<const char*> allowed) const {
+  void require_only(const std::vector<const char*>& allowed) const {
     for (const auto& [key, node] : table_) {
       const auto matches = [&key_text = key](const char* word) { return key_text.str() == word; };
       if (std::none_of(allowed.begin(), allowed.end(), matches)) {
@@ -87,15 +88,62 @@ class TableReader {
     return *value;
   }
 
-  int pixels(const char* key) const {
-    if (!has(key)) return kDefaultFilmSide;
+  /// A number in the closed interval [least, most]. @param allowed says so in the message
+  double number_within(const char* key, double least, double most, const std::string& allowed) const {
+    const toml::node& node = require(key);
+    const std::optional<double> value = finite(node);
+    if (!value || !(*value >= least && *value <= most))
+      fail_at_key(where(node), full_key(key), text_of(node), allowed);
+    return *value;
+  }
+
+  /// A number of at most kMaxCoordinate.
+  double number(const char* key) const {
+    return number_within(key, -kMaxCoordinate, kMaxCoordinate, "a finite number of at most 1e100");
+  }
+
+  bool flag(const char* key) const {
+    const toml::node& node = require(key);
+    const std::optional<bool> value = node.value_exact<bool>();
+    if (!value) fail_at_key(where(node), full_key(key), text_of(node), "true or false");
+    return *value;
+  }
+
+  /// The place of a text among the allowed ones.
+  std::size_t choice(const char* key, const std::vector<const char*>& allowed) const {
+    const toml::node& node = require(key);
+    const std::optional<std::string> value = node.value_exact<std::string>();
+    for (std::size_t i = 0; value && i < allowed.size(); ++i)
+      if (*value == allowed[i]) return i;
+    fail_at_key(where(node), full_key(key), text_of(node), joined(allowed));
+  }
+
+  /// Two finite numbers.
+  glm::dvec2 pair(const char* key) const {
+    const toml::node& node = require(key);
+    const toml::array* const array = node.as_array();
+    const bool is_pair = array != nullptr && array->size() == 2;
+    const std::optional<double> first = is_pair ? finite((*array)[0]) : std::nullopt;
+    const std::optional<double> second = is_pair ? finite((*array)[1]) : std::nullopt;
+    if (!first || !second)
+      fail_at_key(where(node), full_key(key), text_of(node), "two finite numbers [u, v]");
+    return {*first, *second};
+  }
+
+  bool is_table(const char* key) const { return require(key).is_table(); }
+  bool is_number(const char* key) const { return require(key).is_number(); }
+
+  int whole_number(const char* key, int least, int most) const {
     const toml::node& node = require(key);
     const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
-    if (!value || *value < 1 || *value > kMaxFilmSide) {
+    if (!value || *value < least || *value > most)
       fail_at_key(where(node), full_key(key), text_of(node),
-                  "a whole number from 1 to " + std::to_string(kMaxFilmSide));
-    }
+                  "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     return static_cast<int>(*value);
+  }
+
+  int pixels(const char* key) const {
+    return has(key) ? whole_number(key, 1, kMaxFilmSide) : kDefaultFilmSide;
   }
 
   glm::dvec3 vector(const char* key) const {
@@ -118,9 +166,9 @@ class TableReader {
     return has(key) ? vector(key) : otherwise;
   }
 
-  /// Three numbers from 0 to `high`; 0 without the key.
-  glm::dvec3 colour_or_black(const char* key, double high, const char* allowed) const {
-    const glm::dvec3 result = vector_or(key, glm::dvec3(0.0));
+  /// Three numbers from 0 to `high`. @param allowed says so in the message
+  glm::dvec3 colour(const char* key, double high, const std::string& allowed) const {
+    const glm::dvec3 result = vector(key);
     for (int channel = 0; channel < 3; ++channel)
       if (!(result[channel] >= 0.0 && result[channel] <= high)) fail_at(key, text_of(key), allowed);
     return result;

@@ -101,7 +101,7 @@ TEST_F(ImageFileTest, exr_returns_the_means_row_by_row_from_the_top) {
   const fs::path path = directory_ / "a.exr";
   const Film film = small_film();
   write_exr(path, film, {});
-  const testbench::ExrImage image = testbench::read_exr_rgb(path);
+  const testbench::RadianceImage image = testbench::read_exr_rgb(path);
   EXPECT_EQ(image.width, 3);
   EXPECT_EQ(image.height, 2);
   const std::vector<double> rgb = film.rgb();

@@ -1,4 +1,4 @@
-#include "testbench/scene/text_lines.hpp"
+#include "testbench/files/text_lines.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -11,6 +11,7 @@
 #include "testbench/commands/wave_options.hpp"
 #include "testbench/film/black_film.hpp"
 #include "testbench/film/image_file.hpp"
+#include "testbench/mono_image/scene_features.hpp"
 #include "testbench/observe/observation.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/statistics/rank_render.hpp"
@@ -63,6 +64,7 @@ RenderRequest RenderCommand::make_request() const {
 }
 
 std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& of) const {
+  of.program = built_for(loaded, of.program);
   return choose_tree(loaded.triangles.size(), of.chip, firmware.given(), of.program);
 }
 

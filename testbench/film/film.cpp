@@ -201,7 +201,8 @@ std::string Film::sha256() const {
 }
 
 double film_scale(const Scene& scene) {
-  double largest = 0.0;
+  const glm::dvec3& outside = scene.environment.constant;
+  double largest = std::max({0.0, outside.x, outside.y, outside.z});
   for (const Material& material : scene.materials) {
     for (int channel = 0; channel < 3; ++channel) largest = std::max(largest, material.emission[channel]);
   }

@@ -7,6 +7,7 @@
 
 #include "testbench/files/atomic_file.hpp"
 #include "testbench/files/input_file.hpp"
+#include "testbench/mono_image/scene_features.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
@@ -28,6 +29,7 @@ bool is_kept(const std::string& key) {
 
 FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
   RenderOptions options = run.options;
+  options.program = built_for(scene, options.program);
   choose_tree(scene.triangles.size(), options.chip, run.given, options.program);
   const RenderResult result = render_on_chip(scene, options);
   FlatStatistics kept;

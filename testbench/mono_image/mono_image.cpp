@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "firmware/path_tracer/geometry/triangle_record.hpp"
+#include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/scene_features.hpp"
@@ -161,6 +162,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
   if (sampling == path_tracer::LightSampling::solid_angle) emitters = join_rectangles(emitters);
   double total_power = 0;
   for (const Emitter& emitter : emitters) total_power += power(emitter, scene);
+  if (!(total_power > 0) && scene.environment.is_lit()) return {};
   if (!(total_power > 0))
     throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
 
@@ -257,6 +259,35 @@ void put_tail(MonoImage& image, std::size_t triangle, int place, const Tail& tai
               sizeof(tail));
 }
 
+path_tracer::MaterialRecord material_record(const Material& material) {
+  path_tracer::MaterialRecord record;
+  const glm::dvec3& colour = material.specular_colour;
+  record.metallic = material.metallic;
+  record.roughness = material.roughness;
+  record.f90 = material.specular;
+  record.f0 =
+      std::min(material.specular, material.specular * path_tracer::reflectance_at_normal(material.ior) *
+                                      std::max({colour.x, colour.y, colour.z}));
+  record.transmission = material.transmission;
+  record.ior = material.ior;
+  record.thin = material.is_thin ? 1 : 0;
+  return record;
+}
+
+void put_material(MonoImage& image, std::size_t triangle, const Material& material) {
+  const path_tracer::RecordSizes& sizes = image.layout.sizes;
+  put_tail(image, triangle, sizes.material, material_record(material));
+  path_tracer::AbsorptionRecord absorption;
+  if (!material.is_thin)
+    absorption.coefficient = path_tracer::absorption_coefficient(to_record(material.attenuation_colour),
+                                                                 material.attenuation_distance);
+  put_tail(image, triangle, sizes.absorption, absorption);
+  put_tail(image, triangle, sizes.coat,
+           path_tracer::CoatRecord{material.clearcoat, material.clearcoat_roughness});
+  put_tail(image, triangle, sizes.sheen,
+           path_tracer::SheenRecord{to_record(material.sheen_colour), material.sheen_roughness});
+}
+
 void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
                   const Lights& lights) {
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
@@ -266,6 +297,7 @@ void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::i
         surface_record(triangle, scene.materials[std::size_t(triangle.material)], faces[i]);
     const std::uint64_t place = i * std::uint64_t(image.layout.sizes.surface);
     std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
+    put_material(image, i, scene.materials[std::size_t(triangle.material)]);
     // As in its light's record: area / (power / total power).
     const glm::dvec3& emission = scene.materials[std::size_t(triangle.material)].emission;
     put_tail(image, i, sizes.aim,
@@ -290,6 +322,7 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   MonoImage image;
   image.layout = path_tracer::make_layout(counts, num_pes, config);
   image.layout.reach = reach;
+  if (config.features.environment) image.layout.environment = to_record(scene.environment.constant);
   image.bytes.resize(image.layout.scene_bytes);
   const CameraRecord camera = camera_record(scene.camera, scene.film);
   put(image, image.layout.camera, &camera, 1);

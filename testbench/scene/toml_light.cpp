@@ -89,7 +89,7 @@ Light read_light(const TableReader& table) {
 
 /// Notes what pictures do not show yet.
 void note_lights_left_out(const std::string& file, Scene& scene) {
-  scene.notes.add("the environment is left out", file, scene.environment.is_lit() ? 1 : 0);
+  scene.notes.add("the environment's image is left out", file, scene.environment.image ? 1 : 0);
   scene.notes.add("a light without area ([[light]]) is left out", file, scene.lights.size());
 }
 

@@ -49,8 +49,9 @@ void aim(const ScatterArguments& arguments, const Surface& surface, const mask& 
                                    light.get(&LightRecord::edge2), light.get(&LightRecord::normal)};
   const poly<double> u = arguments.path.get(&PathRecord::light_u);
   const poly<double> v = arguments.path.get(&PathRecord::light_v);
-  const LightSample sample = sample_light(arguments.light_sampling, light_surface, light.get(&LightRecord::shape),
-                                          surface.position, surface.normal, u, v);
+  const LightSample sample =
+      sample_light(arguments.light_sampling, light_surface, light.get(&LightRecord::shape), surface.position,
+                   surface.normal, u, v);
   const mask facing = sample.weight > 0.0;
   const poly<double> scale = cn::select(facing, sample.weight, poly<double>(0.0)) *
                              light.get(&LightRecord::inverse_pdf) * (1.0 / kPi);
@@ -168,8 +169,7 @@ void continue_path(const ContinuePathsArguments& arguments) {
   arguments.next_path.set(&PathRecord::folded, cn::select(flushed, poly<std::int32_t>(1), folded));
   if (arguments.path_has_tail)
     tail<DirectionRecord>(arguments.next_path)
-        .set(&DirectionRecord::pdf,
-             tail<DirectionRecord>(arguments.scatter).get(&DirectionRecord::pdf));
+        .set(&DirectionRecord::pdf, tail<DirectionRecord>(arguments.scatter).get(&DirectionRecord::pdf));
 }
 
 /// Chooses the light for the shadow ray of the vertex that the new ray will find. It is chosen this early

@@ -11,11 +11,11 @@
 
 /// What happens to a segment at the surface that it hit, in scenes that are not plain (records/features.hpp).
 ///
-/// Light of emitting triangles arrives by shadow rays and by hits. For each light point y that a vertex x sees,
-/// the weights of both add up to 1, so that the sum is unbiased whatever they are. They are the power heuristic
-/// (Veach and Guibas, SIGGRAPH 1995) of two densities by solid angle: the BSDF's, and that of a point uniform in
-/// the lights' areas. The latter stands for the density that shadow rays have in fact, which is close to it for
-/// small or distant lights; near a large light it is lower, where hits do better.
+/// Light of emitting triangles arrives by shadow rays and by hits. For each light point y that a vertex x
+/// sees, the weights of both add up to 1, so that the sum is unbiased whatever they are. They are the power
+/// heuristic (Veach and Guibas, SIGGRAPH 1995) of two densities by solid angle: the BSDF's, and that of a
+/// point uniform in the lights' areas. The latter stands for the density that shadow rays have in fact, which
+/// is close to it for small or distant lights; near a large light it is lower, where hits do better.
 namespace path_tracer {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -108,9 +108,9 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
   const LightSurface light_surface{light.get(&LightRecord::vertex), light.get(&LightRecord::edge1),
                                    light.get(&LightRecord::edge2), light.get(&LightRecord::normal)};
   const Direction3& normal = vertex.bsdf.point.geometric_normal;
-  const LightSample sample =
-      sample_light(arguments.light_sampling, light_surface, light.get(&LightRecord::shape), vertex.position, normal,
-                   arguments.path.get(&PathRecord::light_u), arguments.path.get(&PathRecord::light_v));
+  const LightSample sample = sample_light(
+      arguments.light_sampling, light_surface, light.get(&LightRecord::shape), vertex.position, normal,
+      arguments.path.get(&PathRecord::light_u), arguments.path.get(&PathRecord::light_v));
   const mask facing = sample.weight > 0.0;
   const poly<double> inverse_pdf = light.get(&LightRecord::inverse_pdf);
   const poly<double> distance_squared = dot(sample.to_light, sample.to_light);
@@ -118,7 +118,8 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
   const Direction3 to_light =
       cn::select(facing, sample.to_light * (1.0 / cn::select(facing, distance, poly<double>(1.0))), normal);
   const BsdfValue value = evaluate_bsdf(vertex.bsdf, to_light);
-  poly<double> scale = cn::select(facing, sample.weight * inverse_pdf / dot(to_light, normal), poly<double>(0.0));
+  poly<double> scale =
+      cn::select(facing, sample.weight * inverse_pdf / dot(to_light, normal), poly<double>(0.0));
   if (arguments.features.multiple_importance) {
     const poly<double> here =
         light_pdf(distance_squared, distance, -dot(sample.to_light, light_surface.normal), inverse_pdf);
@@ -140,8 +141,8 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
 inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
   const poly<double> one = 1.0;
   if (!arguments.features.lobes.absorption) return {one, one, one};
-  const Rgb coefficient =
-      tail<AbsorptionRecord>(arguments.surface, arguments.sizes.absorption).get(&AbsorptionRecord::coefficient);
+  const Rgb coefficient = tail<AbsorptionRecord>(arguments.surface, arguments.sizes.absorption)
+                              .get(&AbsorptionRecord::coefficient);
   const poly<double> distance = tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::distance);
   return cn::select(front, Rgb{one, one, one}, transmittance(coefficient, distance));
 }
@@ -151,8 +152,7 @@ inline Bsdf bsdf_at_hit(const ShadeArguments& arguments, const Direction3& norma
   config.lobes = arguments.features.lobes;
   config.diffuse_pdf = arguments.features.multiple_importance;
   config.skips_absent_lobes = true;
-  const Direction3 to_viewer =
-      tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction) * -1.0;
+  const Direction3 to_viewer = tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction) * -1.0;
   return prepare_bsdf(config, read_material(arguments, front), {normal, normal, to_viewer});
 }
 
@@ -160,9 +160,12 @@ inline Bsdf bsdf_at_hit(const ShadeArguments& arguments, const Direction3& norma
 inline mask shares_light(const ShadeArguments& arguments, const Material& material) {
   const mask all = poly<double>(0.0) == poly<double>(0.0);
   switch (arguments.estimator) {
-    case Estimator::light: return !all;
-    case Estimator::mis: return all;
-    case Estimator::per_lobe: break;
+    case Estimator::light:
+      return !all;
+    case Estimator::mis:
+      return all;
+    case Estimator::per_lobe:
+      break;
   }
   return !is_diffuse(arguments.features.lobes, material);
 }
@@ -196,7 +199,8 @@ inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& ver
                         cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
   const poly<double> shared = cn::select(vertex.shares_light, sample.pdf, poly<double>(0.0));
   tail<DirectionRecord>(arguments.scatter)
-      .set(&DirectionRecord::pdf, cn::select(sample.is_delta | sample.transmits, poly<double>(kInfinity), shared));
+      .set(&DirectionRecord::pdf,
+           cn::select(sample.is_delta | sample.transmits, poly<double>(kInfinity), shared));
   return hit;
 }
 

@@ -84,8 +84,8 @@ struct TraverseArguments {
 struct FinishArguments {
   PolyPointer<TraversalRecord> record;
   MonoRecords surfaces;
-  MonoRecords hits;           ///< intersection bin
-  bool hit_has_tail = false;  ///< ArrivalRecord
+  MonoRecords hits;                ///< intersection bin
+  bool hit_has_tail = false;       ///< ArrivalRecord
   MonoAddress surface_places = 0;  ///< bin
   PolyPointer<HitRecord> hit;
   PolyField<MonoAddress> surface_place;

@@ -72,7 +72,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
   layout.triangles =
       memory.take<TriangleRecord>("triangles", std::uint64_t(scene.triangles + behind_triangles));
-  layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles), layout.sizes.surface);
+  layout.surfaces =
+      memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles), layout.sizes.surface);
   layout.lights = memory.take<LightRecord>("lights", std::uint64_t(scene.lights));
   layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(scene.lights));
   if (config.uses_tree())

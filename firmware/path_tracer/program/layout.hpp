@@ -30,10 +30,11 @@ struct Layout {
   int light_count = 0;
   int tree_slots = 0;
   int treelet_pool_blocks = 0;
-  Features features;              ///< of the scene; the firmware is built for them
-  RecordSizes sizes{Features{}};  ///< of records with tails: surfaces, intersection_bin, scatter_bin, path_bin
-  vec3<double> environment{};     ///< radiance that arrives from outside the scene
-  double reach = 0;               ///< no ray starts farther from a vertex (triangle_record.hpp)
+  Features features;  ///< of the scene; the firmware is built for them
+  RecordSizes sizes{
+      Features{}};             ///< of records with tails: surfaces, intersection_bin, scatter_bin, path_bin
+  vec3<double> environment{};  ///< radiance that arrives from outside the scene
+  double reach = 0;            ///< no ray starts farther from a vertex (triangle_record.hpp)
 
   // Bins: one record for each slot, slot_vertices for `vertices`.
   cn::MonoPointer<RayRecord> ray_bin;    ///< of brute force

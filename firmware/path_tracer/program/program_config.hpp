@@ -64,9 +64,9 @@ struct ProgramConfig {
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
-  int bin_blocks = 8;            ///< length of each bin in blocks of one SIMD width
-  int slot_vertices = 16;        ///< vertices a path slot holds; a multiple of kVerticesPerLoad
-  int roulette_start = 0;        ///< segments a path lives without roulette
+  int bin_blocks = 8;      ///< length of each bin in blocks of one SIMD width
+  int slot_vertices = 16;  ///< vertices a path slot holds; a multiple of kVerticesPerLoad
+  int roulette_start = 0;  ///< segments a path lives without roulette
   /// Below 1, so that paths between white surfaces end. Where it is below an albedo, weights grow from bounce
   /// to bounce by albedo / max_survival; above the albedo's square, their variance stays finite.
   double max_survival = 0.999999;

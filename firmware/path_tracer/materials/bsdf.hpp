@@ -163,10 +163,9 @@ inline SpecularBase specular_base(const Lobes& lobes, const Material& material, 
 
 /// Diffuse reflectance under varnish (Kulla and Conty 2017): what varnish does not reflect, on the way in and
 /// out, divided by its average so that a white one loses nothing.
-inline poly<double> coupling_viewer(const Material& material, const poly<double>& alpha,
-                                    const DirectionalAlbedo& viewer) {
+inline poly<double> coupling_viewer(const Material& material, const DirectionalAlbedo& viewer) {
   const poly<double> average =
-      schlick_albedo({average_loss(material.roughness, alpha), average_schlick_share(material.roughness)},
+      schlick_albedo({average_loss(material.roughness), average_schlick_share(material.roughness)},
                      material.f0, material.f90);
   return cn::max(1.0 - schlick_albedo(viewer, material.f0, material.f90), poly<double>(0.0)) /
          cn::max(1.0 - average, poly<double>(kLeastCoupling));
@@ -174,9 +173,8 @@ inline poly<double> coupling_viewer(const Material& material, const poly<double>
 
 /// The share of light that metal reflects after more than one scattering, without the loss of the light's
 /// direction: a geometric series (Kulla and Conty 2017).
-inline Rgb multiple_scattering(const Material& material, const poly<double>& alpha,
-                               const DirectionalAlbedo& viewer) {
-  const poly<double> loss = average_loss(material.roughness, alpha);
+inline Rgb multiple_scattering(const Material& material, const DirectionalAlbedo& viewer) {
+  const poly<double> loss = average_loss(material.roughness);
   const poly<double> factor =
       material.metallic * viewer.loss * (1.0 - loss) / cn::max(loss, poly<double>(kLeastAverageLoss));
   const auto of = [&](const poly<double>& base) {

@@ -232,8 +232,15 @@ inline EvaluatedBsdf evaluate_layers(const Bsdf& bsdf, const LightSide& light, c
   return {{value, pdf}, light, layers};
 }
 
+/// Lambert's law needs no guard: a cosine of 0 makes all 0.
+inline EvaluatedBsdf evaluate_only_diffuse(const Bsdf& bsdf, const Direction3& to_light) {
+  const poly<double> pdf = cn::max(dot(bsdf.point.normal, to_light), poly<double>(0.0)) * (1.0 / kPi);
+  return {{bsdf.terms.cosine.diffuse * pdf, pdf}, {}, {}};
+}
+
 inline EvaluatedBsdf evaluate(const Bsdf& bsdf, const Direction3& to_light) {
   const Lobes& lobes = bsdf.config.lobes;
+  if (lobes.only_diffuse() && !bsdf.config.shading_normals) return evaluate_only_diffuse(bsdf, to_light);
   const LightSide light = light_side(bsdf, to_light);
   const mask reflects = lobes.transmissive() ? !light.transmits : mask();
   const bool needs_facet = lobes.rough_specular() || lobes.coat || lobes.sheen;

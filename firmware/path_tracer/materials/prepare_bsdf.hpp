@@ -33,8 +33,8 @@ inline CosinePart cosine_part(const Lobes& lobes, const Material& material, cons
   const GgxAlbedo albedo = ggx_albedo(alpha, lobes.diffuse);
   const DirectionalAlbedo viewer = directional_albedo(albedo, cos_viewer, lobes.diffuse);
   const Rgb none{0.0, 0.0, 0.0};
-  return {{lobes.diffuse ? material.base_color * (opaque * coupling_viewer(material, alpha, viewer)) : none,
-           lobes.glossy ? multiple_scattering(material, alpha, viewer) : none},
+  return {{lobes.diffuse ? material.base_color * (opaque * coupling_viewer(material, viewer)) : none,
+           lobes.glossy ? multiple_scattering(material, viewer) : none},
           albedo};
 }
 

@@ -212,8 +212,9 @@ inline BsdfSample only_diffuse_sample(const Bsdf& bsdf, const UniformPair& unifo
   const Rgb& color = bsdf.terms.cosine.diffuse;
   if (!bsdf.config.diffuse_pdf && !bsdf.config.shading_normals) return {direction, color, {}, none, none};
   const EvaluatedBsdf evaluated = evaluate(bsdf, direction);
-  return {direction, cn::select(evaluated.light.lit, color, Rgb{0.0, 0.0, 0.0}), evaluated.value.pdf, none,
-          none};
+  const Rgb weight =
+      bsdf.config.shading_normals ? cn::select(evaluated.light.lit, color, Rgb{0.0, 0.0, 0.0}) : color;
+  return {direction, weight, evaluated.value.pdf, none, none};
 }
 
 /// Only mirrors and smooth glass: there is nothing to evaluate.

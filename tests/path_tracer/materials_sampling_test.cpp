@@ -3,7 +3,8 @@
 #include <limits>
 
 #include "tests/support/chi_square.hpp"
-#include "tests/support/material_bench.hpp"
+#include "tests/support/material_settings.hpp"
+#include "tests/support/polar_cells.hpp"
 #include "tests/support/statistics.hpp"
 
 /// Samples, densities and values of BSDFs against each other.
@@ -12,188 +13,28 @@ namespace materials_sampling_test {
 using path_tracer::BsdfConfig;
 using path_tracer::Lobes;
 using test_support::ChiSquare;
+using test_support::every_lobe;
+using test_support::glass;
+using test_support::kViewerCosines;
+using test_support::lobes_of;
+using test_support::metal;
+using test_support::mixture;
 using test_support::MonoMaterial;
 using test_support::MonoPoint;
 using test_support::MonoSample;
 using test_support::MonoValue;
 using test_support::Numbers;
+using test_support::PolarCells;
+using test_support::seen_at;
+using test_support::Setting;
+using test_support::thin;
 using test_support::unit;
+using test_support::varnish;
 using test_support::Vector;
+using test_support::with_coat;
+using test_support::with_sheen;
 
 constexpr double kPi = path_tracer::kPi;
-
-struct Setting {
-  const char* name;
-  Lobes lobes;
-  MonoMaterial material;
-};
-
-Lobes lobes_of(std::initializer_list<bool Lobes::*> members) {
-  Lobes lobes;
-  for (bool Lobes::*member : members) lobes.*member = true;
-  return lobes;
-}
-
-Lobes every_lobe() {
-  return lobes_of({&Lobes::diffuse, &Lobes::glossy, &Lobes::mirror, &Lobes::glass, &Lobes::rough_glass,
-                   &Lobes::coat, &Lobes::sheen});
-}
-
-MonoMaterial metal(double roughness) {
-  MonoMaterial material;
-  material.metallic = 1;
-  material.roughness = roughness;
-  material.base_color = {0.9, 0.6, 0.3};
-  return material;
-}
-
-MonoMaterial varnish(double roughness) {
-  MonoMaterial material;
-  material.roughness = roughness;
-  material.base_color = {0.2, 0.5, 0.8};
-  return material;
-}
-
-MonoMaterial glass(double roughness, double eta) {
-  MonoMaterial material;
-  material.transmission = 1;
-  material.roughness = roughness;
-  material.eta = eta;
-  material.base_color = {0.9, 1, 0.8};
-  return material;
-}
-
-MonoMaterial thin(double roughness) {
-  MonoMaterial material = glass(roughness, 1.5);
-  material.thin = true;
-  return material;
-}
-
-MonoMaterial with_coat(MonoMaterial material, double coat, double roughness) {
-  material.coat = coat;
-  material.coat_roughness = roughness;
-  return material;
-}
-
-MonoMaterial with_sheen(MonoMaterial material, double roughness) {
-  material.sheen_color = {0.7, 0.5, 0.9};
-  material.sheen_roughness = roughness;
-  return material;
-}
-
-/// A bit of everything, so that every lobe is sampled.
-MonoMaterial mixture(double roughness) {
-  MonoMaterial material = with_sheen(with_coat(varnish(roughness), 0.6, 0.4), 0.6);
-  material.metallic = 0.3;
-  material.transmission = 0.4;
-  return material;
-}
-
-std::vector<Setting> settings() {
-  const Lobes glossy = lobes_of({&Lobes::glossy});
-  const Lobes plastic = lobes_of({&Lobes::diffuse, &Lobes::glossy});
-  const Lobes frosted = lobes_of({&Lobes::rough_glass});
-  const Lobes coated = lobes_of({&Lobes::diffuse, &Lobes::glossy, &Lobes::coat});
-  std::vector<Setting> all = {
-      {"diffuse", lobes_of({&Lobes::diffuse}), varnish(0.5)},
-      {"varnish over diffuse, smooth", lobes_of({&Lobes::diffuse, &Lobes::mirror}), varnish(0)},
-      {"varnish, roughness 0.2", plastic, varnish(0.2)},
-      {"varnish, roughness 0.7", plastic, varnish(0.7)},
-      {"half metal", plastic, mixture(0.5)},
-      {"glass into a dense medium, 0.4", frosted, glass(0.4, 1.5)},
-      {"glass into a dense medium, 0.8", frosted, glass(0.8, 1.5)},
-      {"glass out of a dense medium, 0.4", frosted, glass(0.4, 1 / 1.5)},
-      {"glass out of a dense medium, 1", frosted, glass(1, 1 / 1.5)},
-      {"diamond", frosted, glass(0.6, 2.4)},
-      {"nearly no boundary", frosted, glass(0.9, 1.2)},
-      {"thin frosted sheet", frosted, thin(0.6)},
-      {"coat, rough, over metal", coated, with_coat(metal(0.5), 1, 0.4)},
-      {"coat, smooth, over varnish", coated, with_coat(varnish(0.4), 0.8, 0)},
-      {"coat over diffuse alone", lobes_of({&Lobes::diffuse, &Lobes::coat}), with_coat(varnish(0.4), 1, 0.3)},
-      {"sheen alone", lobes_of({&Lobes::sheen}), with_sheen(varnish(1), 0.3)},
-      {"sheen over diffuse", lobes_of({&Lobes::diffuse, &Lobes::sheen}), with_sheen(varnish(1), 0.5)},
-      {"sheen over a mirror", lobes_of({&Lobes::mirror, &Lobes::sheen}), with_sheen(metal(0), 0.5)},
-      {"every lobe, rough", every_lobe(), mixture(0.5)},
-      {"every lobe, smooth", every_lobe(), mixture(0)},
-  };
-  for (const double roughness : {0.1, 0.25, 0.5, 0.75, 1.0})
-    all.push_back({"metal", glossy, metal(roughness)});
-  return all;
-}
-
-/// From the zenith to grazing.
-constexpr double kViewerCosines[] = {1, 0.6, 0.1, 0.02};
-
-MonoPoint seen_at(double cosine) {
-  const Vector normal = unit({1, 2, -3});
-  const Vector tangent = unit(cross(normal, Vector{0.3, 0.1, 1}));
-  return {normal, normal * cosine + tangent * std::sqrt(1 - cosine * cosine), normal};
-}
-
-/// Cells of the sphere around a pole, small near it, because a narrow lobe is there.
-class PolarCells {
- public:
-  static constexpr int kRings = 36;
-  static constexpr int kSectors = 36;
-
-  /// @param points along each side of a cell
-  PolarCells(const Vector& pole, int points)
-      : points_(points),
-        pole_(pole),
-        x_(unit(cross(std::abs(pole.x) < 0.5 ? Vector{1, 0, 0} : Vector{0, 1, 0}, pole))),
-        y_(cross(pole, x_)) {}
-
-  std::size_t count() const { return std::size_t(kRings) * kSectors; }
-
-  std::size_t cell_of(const Vector& direction) const {
-    const double across = std::hypot(dot(direction, x_), dot(direction, y_));
-    const double angle = std::atan2(across, dot(direction, pole_));
-    const double around = std::atan2(dot(direction, y_), dot(direction, x_));
-    const double sector = around / (2 * kPi) - std::floor(around / (2 * kPi));
-    const double from_pole = std::cbrt(std::min(angle, kPi - angle) / (kPi / 2));
-    const int ring = static_cast<int>(kRings / 2 * (angle < kPi / 2 ? from_pole : 2 - from_pole));
-    return std::size_t(std::min(ring, kRings - 1)) * kSectors +
-           std::size_t(std::min(static_cast<int>(sector * kSectors), kSectors - 1));
-  }
-
-  struct Point {
-    std::size_t cell;
-    Vector direction;
-    double solid_angle;
-  };
-
-  /// Points of the midpoint rule in the two angles.
-  std::vector<Point> points() const {
-    std::vector<Point> all;
-    for (int ring = 0; ring < kRings; ++ring) {
-      const double low = ring_angle(ring);
-      const double step = (ring_angle(ring + 1) - low) / points_;
-      for (int i = 0; i < points_; ++i) {
-        const double angle = low + (i + 0.5) * step;
-        const double weight = step * 2 * kPi / (kSectors * points_) * std::sin(angle);
-        for (int j = 0; j < kSectors * points_; ++j) {
-          const double around = 2 * kPi * (j + 0.5) / (kSectors * points_);
-          const Vector direction =
-              pole_ * std::cos(angle) + (x_ * std::cos(around) + y_ * std::sin(around)) * std::sin(angle);
-          all.push_back({std::size_t(ring) * kSectors + std::size_t(j / points_), direction, weight});
-        }
-      }
-    }
-    return all;
-  }
-
- private:
-  /// Narrow at both poles; one edge is the equator, which is the horizon where the pole is the normal.
-  static double ring_angle(int ring) {
-    const double share = 2.0 * ring / kRings;
-    return share <= 1 ? kPi / 2 * std::pow(share, 3) : kPi - kPi / 2 * std::pow(2 - share, 3);
-  }
-
-  int points_;
-  Vector pole_;
-  Vector x_;
-  Vector y_;
-};
 
 Vector reflected(const MonoPoint& point) {
   return point.normal * (2 * dot(point.normal, point.to_viewer)) - point.to_viewer;
@@ -254,10 +95,10 @@ class MaterialsSampling : public test_support::MaterialBench {
 };
 
 TEST_F(MaterialsSampling, SamplesHaveTheDensity) {
-  const double threshold =
-      test_support::normal_threshold(test_support::per_test(double(settings().size() * 4)));
+  const double threshold = test_support::normal_threshold(
+      test_support::per_test(double(test_support::material_settings().size() * 4)));
   std::uint64_t seed = 100;
-  for (const Setting& s : settings())
+  for (const Setting& s : test_support::material_settings())
     for (const double cosine : kViewerCosines) {
       BsdfConfig config;
       config.lobes = s.lobes;
@@ -300,7 +141,7 @@ TEST_F(MaterialsSampling, TheTestSeesSmallErrors) {
 }
 
 TEST_F(MaterialsSampling, WeightsAndDensitiesAreThoseOfTheEvaluation) {
-  for (const Setting& s : settings())
+  for (const Setting& s : test_support::material_settings())
     for (const double cosine : kViewerCosines) {
       if (s.lobes.only_diffuse()) continue;  // its weight is the reflectance, without a quotient
       BsdfConfig config;
@@ -325,7 +166,7 @@ TEST_F(MaterialsSampling, WeightsAndDensitiesAreThoseOfTheEvaluation) {
 }
 
 TEST_F(MaterialsSampling, WeightsAreBounded) {
-  for (const Setting& s : settings())
+  for (const Setting& s : test_support::material_settings())
     for (const double cosine : kViewerCosines) {
       BsdfConfig config;
       config.lobes = s.lobes;
@@ -399,6 +240,36 @@ TEST_F(MaterialsSampling, OtherLobesDoNotMoveDiffuseSamples) {
     }
 }
 
+/// A program with every lobe gives each material the samples of the program that has only its own: what is
+/// left out is a pure saving.
+TEST_F(MaterialsSampling, LobesOfOtherMaterialsChangeNothing) {
+  for (const Setting& s : test_support::material_settings()) {
+    if (s.lobes.only_diffuse()) continue;  // tested above
+    MonoMaterial material = s.material;
+    // What the small program does not read, the large one must be told is absent.
+    if (!s.lobes.transmissive()) material.transmission = 0;
+    if (!s.lobes.coat) material.coat = 0;
+    if (!s.lobes.sheen) material.sheen_color = {0, 0, 0};
+    if (!s.lobes.specular()) material.f0 = material.f90 = 0;
+    if (!s.lobes.diffuse && !s.lobes.specular()) continue;  // sheen alone: the large one has a base
+    const std::vector<Numbers> numbers = random_numbers(1024, 18);
+    BsdfConfig config;
+    config.lobes = s.lobes;
+    const std::vector<MonoSample> own = sample_all(config, material, seen_at(0.4), numbers);
+    config.lobes = every_lobe();
+    const std::vector<MonoSample> all = sample_all(config, material, seen_at(0.4), numbers);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      ASSERT_EQ(own[i].direction.x, all[i].direction.x) << s.name;
+      ASSERT_EQ(own[i].direction.y, all[i].direction.y) << s.name;
+      ASSERT_EQ(own[i].direction.z, all[i].direction.z) << s.name;
+      ASSERT_EQ(own[i].is_delta, all[i].is_delta) << s.name;
+      ASSERT_NEAR(own[i].weight.x, all[i].weight.x, 1e-14 * own[i].weight.x) << s.name;
+      ASSERT_NEAR(own[i].weight.z, all[i].weight.z, 1e-14 * own[i].weight.z) << s.name;
+      ASSERT_NEAR(own[i].pdf, all[i].pdf, 1e-14 * own[i].pdf) << s.name;
+    }
+  }
+}
+
 TEST_F(MaterialsSampling, SkippingAbsentLobesChangesNothing) {
   for (const MonoMaterial& material :
        {mixture(0.5), varnish(0.4), with_coat(metal(0.3), 1, 0.2), with_sheen(glass(0.5, 1.5), 0.4)}) {
@@ -425,7 +296,7 @@ TEST_F(MaterialsSampling, TheSameBitsAtEveryLevel) {
     std::memcpy(&bits, &value, sizeof(bits));
     hash = (hash ^ bits) * 0x100000001b3u;
   };
-  for (const Setting& s : settings())
+  for (const Setting& s : test_support::material_settings())
     for (const double cosine : kViewerCosines) {
       BsdfConfig config;
       config.lobes = s.lobes;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/path_tracer/materials/material.hpp"
+#include "firmware/path_tracer/materials/fresnel.hpp"
 
 /// Directional albedo of GGX's single scattering, fitted. Tests recompute the integrals and bound the error.
 namespace path_tracer {
@@ -82,18 +82,18 @@ inline constexpr double kSchlickShareAverage[] = {0.047382917, 0.0155498173, -0.
 
 /// For a width of GGX, the light that single scattering loses or reflects, by direction.
 struct GgxAlbedo {
-  poly<double> alpha;
+  bool is_fitted = false;  ///< without it, all surfaces are smooth and the albedos are exact
+  bool may_be_smooth = false;
+  poly<double> scaled_alpha;
   PolyCoefficients<7> loss;
   PolyCoefficients<6> schlick_share;
 };
 
-inline GgxAlbedo ggx_albedo(const poly<double>& alpha, bool needs_schlick_share) {
-  GgxAlbedo albedo{alpha * 0.7, insert_y(albedo_detail::kLoss, alpha), {}};
-  if (needs_schlick_share) {
-    const PolyCoefficients<6> share = insert_y(albedo_detail::kSchlickShare, 1.0 / (1.0 + 16.0 * alpha));
-    for (std::size_t i = 0; i < 6; ++i) albedo.schlick_share.of_power[i].assign_all_lanes(share.of_power[i]);
-  }
-  return albedo;
+/// @param alpha 0 where the surface is smooth, which is possible only with `may_be_smooth`
+inline GgxAlbedo ggx_albedo(const poly<double>& alpha, bool may_be_smooth, bool needs_schlick_share) {
+  return {true, may_be_smooth, alpha * 0.7, insert_y(albedo_detail::kLoss, alpha),
+          needs_schlick_share ? insert_y(albedo_detail::kSchlickShare, 1.0 / (1.0 + 16.0 * alpha))
+                              : PolyCoefficients<6>{}};
 }
 
 /// The light of one direction.
@@ -110,21 +110,34 @@ inline poly<double> schlick_albedo(const DirectionalAlbedo& albedo, const poly<d
   return f0 * (1.0 - albedo.loss) + (f90 - f0) * albedo.schlick_share;
 }
 
+/// The fitted value, or the exact one where the surface is smooth.
+inline poly<double> fitted_or_smooth(const GgxAlbedo& albedo, const poly<double>& fitted, double smooth) {
+  if (!albedo.may_be_smooth) return fitted;
+  return cn::select(albedo.scaled_alpha > 0.0, fitted, poly<double>(smooth));
+}
+
 inline DirectionalAlbedo directional_albedo(const GgxAlbedo& albedo, const poly<double>& cosine,
                                             bool needs_schlick_share) {
-  const poly<double> x = cosine / (cosine + albedo.alpha);
-  const poly<double> loss = cn::max(x * value_at(albedo.loss, x), poly<double>(0.0));
-  if (!needs_schlick_share) return {loss, 0.0};
-  const poly<double> share = cn::max(value_at(albedo.schlick_share, x), poly<double>(0.0));
+  const poly<double> zero = 0.0;
+  if (!albedo.is_fitted) return {zero, needs_schlick_share ? schlick_weight(cosine) : zero};
+  const poly<double> x = cosine / (cosine + albedo.scaled_alpha);
+  const poly<double> loss = fitted_or_smooth(albedo, cn::max(x * value_at(albedo.loss, x), zero), 0.0);
+  if (!needs_schlick_share) return {loss, zero};
+  const poly<double> share = fitted_or_smooth(albedo, cn::max(value_at(albedo.schlick_share, x), zero), 1.0);
   return {loss, schlick_weight(cosine) * share};
 }
 
-/// Averages of the loss and of the Schlick share over the cosine-weighted hemisphere.
-inline poly<double> average_loss(const poly<double>& roughness) {
-  return value_at(albedo_detail::kLossAverage, roughness);
-}
-inline poly<double> average_schlick_share(const poly<double>& roughness) {
-  return value_at(albedo_detail::kSchlickShareAverage, roughness);
+/// Averages over the cosine-weighted hemisphere; without a Schlick share where none is needed.
+inline DirectionalAlbedo average_albedo(const GgxAlbedo& albedo, const poly<double>& roughness,
+                                        bool needs_schlick_share) {
+  constexpr double kAverageSchlickWeight = 1.0 / 21.0;
+  const poly<double> zero = 0.0;
+  if (!albedo.is_fitted) return {zero, kAverageSchlickWeight};
+  const poly<double> loss =
+      fitted_or_smooth(albedo, cn::max(value_at(albedo_detail::kLossAverage, roughness), zero), 0.0);
+  if (!needs_schlick_share) return {loss, zero};
+  const poly<double> share = value_at(albedo_detail::kSchlickShareAverage, roughness);
+  return {loss, fitted_or_smooth(albedo, share, kAverageSchlickWeight)};
 }
 
 }  // namespace path_tracer

@@ -59,7 +59,9 @@ struct SpecularBase {
 /// Reflectances with all factors but those of the light's direction.
 struct CosineBase {
   Rgb diffuse;
-  Rgb multiple;  ///< of the light that metal scatters several times
+  Rgb multiple;               ///< of the light that metal and frosted sheets scatter several times
+  Rgb behind;                 ///< the same of what frosted sheets transmit
+  poly<double> share_behind;  ///< of the samples
 };
 
 /// Share of light that coat and sheen let through in one direction.
@@ -163,30 +165,38 @@ inline SpecularBase specular_base(const Lobes& lobes, const Material& material, 
 
 /// Diffuse reflectance under varnish (Kulla and Conty 2017): what varnish does not reflect, on the way in and
 /// out, divided by its average so that a white one loses nothing.
-inline poly<double> coupling_viewer(const Material& material, const DirectionalAlbedo& viewer) {
-  const poly<double> average =
-      schlick_albedo({average_loss(material.roughness), average_schlick_share(material.roughness)},
-                     material.f0, material.f90);
+inline poly<double> coupling_viewer(const Material& material, const DirectionalAlbedo& average,
+                                    const DirectionalAlbedo& viewer) {
   return cn::max(1.0 - schlick_albedo(viewer, material.f0, material.f90), poly<double>(0.0)) /
-         cn::max(1.0 - average, poly<double>(kLeastCoupling));
+         cn::max(1.0 - schlick_albedo(average, material.f0, material.f90), poly<double>(kLeastCoupling));
 }
 
 /// The share of light that metal reflects after more than one scattering, without the loss of the light's
-/// direction: a geometric series (Kulla and Conty 2017).
-inline Rgb multiple_scattering(const Material& material, const DirectionalAlbedo& viewer) {
-  const poly<double> loss = average_loss(material.roughness);
-  const poly<double> factor =
-      material.metallic * viewer.loss * (1.0 - loss) / cn::max(loss, poly<double>(kLeastAverageLoss));
-  const auto of = [&](const poly<double>& base) {
-    const poly<double> average_fresnel = (20.0 * base + 1.0) * (1.0 / 21.0);  // of Schlick's with f90 = 1
-    return factor * average_fresnel * average_fresnel / (1.0 - average_fresnel * loss);
+/// direction: a geometric series (Kulla and Conty 2017). The three channels share one quotient.
+inline Rgb multiple_scattering(const Material& material, const DirectionalAlbedo& average,
+                               const DirectionalAlbedo& viewer) {
+  const auto fresnel = [](const poly<double>& base) {  // average of Schlick's with f90 = 1
+    return (20.0 * base + 1.0) * (1.0 / 21.0);
   };
-  return {of(material.base_color.x), of(material.base_color.y), of(material.base_color.z)};
+  const Rgb f{fresnel(material.base_color.x), fresnel(material.base_color.y), fresnel(material.base_color.z)};
+  const Rgb rest{1.0 - f.x * average.loss, 1.0 - f.y * average.loss, 1.0 - f.z * average.loss};
+  const poly<double> rest_xy = rest.x * rest.y;
+  const poly<double> all = rest_xy * rest.z * cn::max(average.loss, poly<double>(kLeastAverageLoss));
+  const poly<double> factor = material.metallic * viewer.loss * (1.0 - average.loss) / all;
+  return f * f * Rgb{factor * rest.y * rest.z, factor * rest.x * rest.z, factor * rest_xy};
+}
+
+/// The same of a frosted sheet. No light stays in it; half of it is taken to leave on either side.
+inline poly<double> frosted_scattering(const Material& material, const poly<double>& transmissive,
+                                       const DirectionalAlbedo& average, const DirectionalAlbedo& viewer) {
+  const poly<double> factor =
+      0.5 * transmissive * viewer.loss / cn::max(average.loss, poly<double>(kLeastAverageLoss));
+  return cn::select(material.thin, factor, poly<double>(0.0));
 }
 
 inline CoatLayer coat_layer(const Material& material, const poly<double>& cos_viewer) {
   const poly<double> alpha = alpha_or_smooth(material.coat_roughness);
-  const GgxAlbedo albedo = ggx_albedo(alpha, true);
+  const GgxAlbedo albedo = ggx_albedo(alpha, true, true);
   return {material.coat, alpha, ggx_size(alpha * alpha, cos_viewer),
           material.coat * schlick_albedo(directional_albedo(albedo, cos_viewer, true), kCoatF0, 1.0), albedo};
 }

@@ -36,6 +36,13 @@ inline LightSide light_side(const Bsdf& bsdf, const Direction3& to_light) {
           transmissive ? lit & (cosine < 0.0) : mask()};
 }
 
+/// Schlick's reflectance of metal and varnish.
+inline Rgb opaque_reflectance(const SpecularBase& base, const poly<double>& cosine) {
+  const poly<double> weight = schlick_weight(cosine);
+  const auto schlick = [&](const poly<double>& f0) { return f0 + (base.f90 - f0) * weight; };
+  return {schlick(base.f0.x), schlick(base.f0.y), schlick(base.f0.z)};
+}
+
 /// Specular reflectance and transmittance at a facet, and the share of samples that are reflected.
 struct FacetSplit {
   Rgb reflectance;
@@ -45,9 +52,7 @@ struct FacetSplit {
 
 inline FacetSplit split_at_facet(const Bsdf& bsdf, const poly<double>& cosine) {
   const SpecularBase& base = bsdf.terms.specular;
-  const poly<double> weight = schlick_weight(cosine);
-  const auto schlick = [&](const poly<double>& f0) { return f0 + (base.f90 - f0) * weight; };
-  const Rgb opaque{schlick(base.f0.x), schlick(base.f0.y), schlick(base.f0.z)};
+  const Rgb opaque = opaque_reflectance(base, cosine);
   if (!bsdf.config.lobes.transmissive()) return {opaque, {}, 1.0};
   const poly<double> fresnel =
       dielectric_fresnel(base.surface, cosine, refracted_cosine(base.surface, cosine));
@@ -55,8 +60,9 @@ inline FacetSplit split_at_facet(const Bsdf& bsdf, const poly<double>& cosine) {
   const Rgb transmitted = bsdf.material.base_color * (base.transmissive * (1.0 - fresnel));
   const poly<double> reflected = largest_channel(reflectance);
   const poly<double> sum = reflected + largest_channel(transmitted);
+  const poly<double> refracted = base.surface.inverse_eta * base.surface.inverse_eta;
   const poly<double> compression =
-      cn::select(bsdf.material.thin, poly<double>(1.0), base.surface.inverse_eta * base.surface.inverse_eta);
+      bsdf.config.lobes.thin_glass ? cn::select(bsdf.material.thin, poly<double>(1.0), refracted) : refracted;
   return {reflectance, transmitted * compression, reflected / cn::max(sum, poly<double>(1e-30))};
 }
 
@@ -64,27 +70,42 @@ inline FacetSplit split_at_facet(const Bsdf& bsdf, const poly<double>& cosine) {
 struct Facet {
   HalfVector half;
   poly<double> cos_viewer;
-  poly<double> cos_light;  ///< negative if transmitted
+  poly<double> cos_light;  ///< where it refracts: negative if that is possible
   mask refracts;
 };
 
-inline Facet facet_between(const Bsdf& bsdf, const LightSide& light) {
+/// Half the length of the sum of two unit vectors is the cosine of half their angle.
+inline poly<double> cosine_of_half_angle(const poly<double>& length) {
+  return cn::min(0.5 * length, poly<double>(1.0));
+}
+
+inline Facet reflecting_facet(const Bsdf& bsdf, const LightSide& light) {
+  const HalfVector half = half_vector(bsdf.point.to_viewer + light.to_light, bsdf.point.normal);
+  return {half, cosine_of_half_angle(cn::sqrt(half.length_squared)), {}, {}};
+}
+
+/// Thin sheets transmit what they would reflect to the mirrored direction.
+inline Facet reflecting_or_refracting_facet(const Bsdf& bsdf, const LightSide& light) {
+  constexpr double kNotZero = 1e-60;
   const ShadingPoint& point = bsdf.point;
-  if (!bsdf.config.lobes.transmissive()) {
-    const HalfVector half = half_vector(point.to_viewer + light.to_light, point.normal);
-    // Half the sum's length is the cosine of half the angle.
-    return {half, cn::min(0.5 * cn::sqrt(half.length_squared), poly<double>(1.0)), 0.0, mask()};
-  }
-  const mask refracts = light.transmits & !bsdf.material.thin;
+  const bool thin = bsdf.config.lobes.thin_glass;
+  const mask refracts = thin ? light.transmits & !bsdf.material.thin : light.transmits;
   const Direction3 to_light =
-      cn::select(light.transmits & bsdf.material.thin,
-                 mirror_at_plane(light.to_light, point.normal, -light.cosine), light.to_light);
+      thin ? cn::select(light.transmits & bsdf.material.thin,
+                        mirror_at_plane(light.to_light, point.normal, -light.cosine), light.to_light)
+           : light.to_light;
   const poly<double> scale = cn::select(refracts, bsdf.terms.specular.surface.eta, poly<double>(1.0));
   const HalfVector half = half_vector(point.to_viewer + to_light * scale, point.normal);
-  const poly<double> inverse = 1.0 / cn::sqrt(cn::max(half.length_squared, poly<double>(1e-60)));
-  const poly<double> outward = cn::flip_sign(inverse, half.along);
-  return {half, cn::min(dot(half.direction, point.to_viewer) * outward, poly<double>(1.0)),
+  const poly<double> length = cn::sqrt(cn::max(half.length_squared, poly<double>(kNotZero)));
+  const poly<double> outward = cn::flip_sign(1.0 / length, half.along);
+  const poly<double> refracting = cn::min(dot(half.direction, point.to_viewer) * outward, poly<double>(1.0));
+  return {half, cn::select(refracts, refracting, cosine_of_half_angle(length)),
           dot(half.direction, to_light) * outward, refracts};
+}
+
+inline Facet facet_between(const Bsdf& bsdf, const LightSide& light) {
+  return bsdf.config.lobes.rough_glass ? reflecting_or_refracting_facet(bsdf, light)
+                                       : reflecting_facet(bsdf, light);
 }
 
 struct LobeValue {
@@ -103,10 +124,8 @@ inline LobeValue evaluate_rough_base(const Bsdf& bsdf, const LightSide& light, c
   const poly<double> visible = 2.0 * distribution / (cos_viewer + base.size_viewer);
   const poly<double> shadowed =
       distribution * light.cosine * ggx_visibility(cos_viewer, base.size_viewer, light.cosine, size_light);
-  if (!bsdf.config.lobes.transmissive()) {
-    const FacetSplit split = split_at_facet(bsdf, facet.cos_viewer);
-    return {split.reflectance * (0.25 * shadowed), 0.25 * visible};
-  }
+  if (!bsdf.config.lobes.rough_glass)
+    return {opaque_reflectance(base, facet.cos_viewer) * (0.25 * shadowed), 0.25 * visible};
   const mask possible = (facet.cos_viewer > 0.0) & ((!facet.refracts) | (facet.cos_light < 0.0));
   const poly<double> cosine = cn::max(facet.cos_viewer, poly<double>(kLeastCosine));
   const FacetSplit split = split_at_facet(bsdf, cosine);
@@ -164,8 +183,11 @@ inline LobeValue evaluate_cosine_base(const Bsdf& bsdf, const LightSide& light) 
   if (lobes.diffuse)
     reflectance.add(base.diffuse *
                     cn::max(1.0 - schlick_albedo(albedo, material.f0, material.f90), poly<double>(0.0)));
-  if (lobes.glossy) reflectance.add(base.multiple * albedo.loss);
-  return {reflectance.total() * pdf, pdf};
+  const bool scatters = lobes.glossy || lobes.frosted_sheets();
+  if (scatters) reflectance.add(base.multiple * albedo.loss);
+  if (!lobes.frosted_sheets()) return {reflectance.total() * pdf, pdf};
+  const Rgb value = cn::select(light.transmits, base.behind * albedo.loss, reflectance.total());
+  return {value * pdf, pdf * cn::select(light.transmits, base.share_behind, 1.0 - base.share_behind)};
 }
 
 /// A value with what sampling needs of it.
@@ -181,19 +203,22 @@ inline LobeValue evaluate_base(const Bsdf& bsdf, const LightSide& light, const F
   const Lobes& lobes = bsdf.config.lobes;
   const bool mixes = lobes.ways_to_sample() > 1;
   const auto share = [&](const poly<double>& pdf, const poly<double>& of) { return mixes ? pdf * of : pdf; };
+  const Rgb none{0.0, 0.0, 0.0};
   RgbSum value;
   Sum pdf;
   if (lobes.rough_specular()) {
     const LobeValue rough = evaluate_rough_base(bsdf, light, facet);
-    value.add(rough.value);
-    pdf.add(share(rough.pdf, bsdf.shares.specular));
+    const poly<double> weighed = share(rough.pdf, bsdf.shares.specular);
+    const bool only_front = lobes.transmissive() && !lobes.rough_glass;
+    value.add(only_front ? cn::select(reflects, rough.value, none) : rough.value);
+    pdf.add(only_front ? cn::select(reflects, weighed, poly<double>(0.0)) : weighed);
   }
   if (lobes.cosine()) {
     const LobeValue cosine = evaluate_cosine_base(bsdf, light);
-    const Rgb none{0.0, 0.0, 0.0};
     const poly<double> weighed = share(cosine.pdf, bsdf.shares.cosine);
-    value.add(lobes.transmissive() ? cn::select(reflects, cosine.value, none) : cosine.value);
-    pdf.add(lobes.transmissive() ? cn::select(reflects, weighed, poly<double>(0.0)) : weighed);
+    const bool only_front = lobes.transmissive() && !lobes.frosted_sheets();
+    value.add(only_front ? cn::select(reflects, cosine.value, none) : cosine.value);
+    pdf.add(only_front ? cn::select(reflects, weighed, poly<double>(0.0)) : weighed);
   }
   return {value.total(), pdf.total()};
 }

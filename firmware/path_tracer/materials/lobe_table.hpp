@@ -18,7 +18,7 @@ struct LobeDescription {
 };
 
 /// The one list of lobes. A lobe is added here, to Lobes and to bsdf*.hpp (docs/how-to/add-a-material.md).
-inline constexpr std::array<LobeDescription, 8> kLobeTable = {{
+inline constexpr std::array<LobeDescription, 9> kLobeTable = {{
     {"diffuse", &Lobes::diffuse, "Lambertian reflection below the specular one",
      "metallicFactor < 1, not fully transmissive", "Kd"},
     {"glossy", &Lobes::glossy, "GGX reflection by metal or varnish, with the light scattered several times",
@@ -29,6 +29,8 @@ inline constexpr std::array<LobeDescription, 8> kLobeTable = {{
      "KHR_materials_transmission, roughnessFactor <= 0.01", "illum 4, 6, 7 with Ni, Tf"},
     {"rough_glass", &Lobes::rough_glass, "GGX reflection and refraction",
      "KHR_materials_transmission, roughnessFactor > 0.01", "illum 6, 7 with Pr"},
+    {"thin_glass", &Lobes::thin_glass, "either glass as a thin sheet: transmission without refraction",
+     "KHR_materials_transmission without KHR_materials_volume", "illum 4, 6, 7 with Ni 1"},
     {"coat", &Lobes::coat, "clear coat of index 1.5 above all but itself", "KHR_materials_clearcoat",
      "Pc, Pcr"},
     {"sheen", &Lobes::sheen, "fibres that stand off, seen at grazing angles", "KHR_materials_sheen", "Ps"},

@@ -26,16 +26,27 @@ struct CosinePart {
   GgxAlbedo albedo;
 };
 
-inline CosinePart cosine_part(const Lobes& lobes, const Material& material, const poly<double>& opaque,
+inline CosinePart cosine_part(const Lobes& lobes, const Material& material, const BaseShares& shares,
                               const poly<double>& alpha, const poly<double>& cos_viewer) {
   if (!lobes.cosine()) return {};
-  if (!lobes.specular()) return {{material.base_color, {}}, {}};
-  const GgxAlbedo albedo = ggx_albedo(alpha, lobes.diffuse);
+  if (!lobes.specular()) return {{material.base_color, {}, {}, {}}, {}};
+  const GgxAlbedo albedo =
+      lobes.rough_specular() ? ggx_albedo(alpha, lobes.smooth_specular(), lobes.diffuse) : GgxAlbedo{};
   const DirectionalAlbedo viewer = directional_albedo(albedo, cos_viewer, lobes.diffuse);
-  const Rgb none{0.0, 0.0, 0.0};
-  return {{lobes.diffuse ? material.base_color * (opaque * coupling_viewer(material, viewer)) : none,
-           lobes.glossy ? multiple_scattering(material, viewer) : none},
-          albedo};
+  const DirectionalAlbedo average = average_albedo(albedo, material.roughness, lobes.diffuse);
+  CosineBase base{};
+  if (lobes.diffuse)
+    assign(base.diffuse, material.base_color * (shares.opaque * coupling_viewer(material, average, viewer)));
+  if (lobes.glossy) assign(base.multiple, multiple_scattering(material, average, viewer));
+  if (lobes.frosted_sheets()) {
+    const poly<double> frosted = frosted_scattering(material, shares.transmissive, average, viewer);
+    assign(base.multiple, lobes.glossy ? plus(base.multiple, frosted) : Rgb{frosted, frosted, frosted});
+    assign(base.behind, material.base_color * frosted);
+    const poly<double> behind = largest_channel(base.behind);
+    const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
+    base.share_behind.assign_all_lanes(behind / cn::max(front + behind, poly<double>(1e-30)));
+  }
+  return {base, albedo};
 }
 
 /// An estimate of the specular base's albedo: Schlick's reflectance for the macroscopic cosine, and all light
@@ -49,10 +60,9 @@ inline poly<double> specular_estimate(const Lobes& lobes, const SpecularBase& ba
 
 inline poly<double> cosine_estimate(const Lobes& lobes, const CosineBase& base) {
   if (!lobes.specular()) return largest_channel(base.diffuse);
-  const Rgb sum = !lobes.glossy    ? base.diffuse
-                  : !lobes.diffuse ? base.multiple
-                                   : base.diffuse + base.multiple;
-  return largest_channel(sum);
+  if (!lobes.glossy && !lobes.frosted_sheets()) return largest_channel(base.diffuse);
+  const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
+  return lobes.frosted_sheets() ? front + largest_channel(base.behind) : front;
 }
 
 /// Samples in proportion to the lobes' albedos, so that no weight is much above the sum of the albedos.
@@ -89,7 +99,7 @@ inline BsdfTerms bsdf_terms(const BsdfConfig& config, const Material& material,
   const BaseShares shares = lobes.specular() ? base_shares(lobes, material) : BaseShares{};
   const SpecularBase specular =
       lobes.specular() ? specular_base(lobes, material, shares, cos_viewer) : SpecularBase{};
-  const CosinePart cosine = cosine_part(lobes, material, shares.opaque, specular.alpha, cos_viewer);
+  const CosinePart cosine = cosine_part(lobes, material, shares, specular.alpha, cos_viewer);
   const CoatLayer coat = lobes.coat ? unless_absent(config, material.coat > 0.0, CoatLayer{},
                                                     [&] { return coat_layer(material, cos_viewer); })
                                     : CoatLayer{};

@@ -125,7 +125,7 @@ inline Direction3 sample_axis(const Bsdf& bsdf, const WayToSample& way, const Un
 struct Departure {
   Direction3 direction;
   mask transmits;
-  FacetSplit split;     ///< at the facet; empty without specular lobes
+  FacetSplit split;     ///< at the facet; empty where there is nothing to choose
   poly<double> cosine;  ///< between viewer and facet
 };
 
@@ -134,8 +134,18 @@ inline Direction3 transmit(const Bsdf& bsdf, const Direction3& axis, const Direc
                            const poly<double>& cosine) {
   const DielectricSurface& surface = bsdf.terms.specular.surface;
   const Direction3& normal = bsdf.point.normal;
+  const Direction3 refracted =
+      refract(surface, bsdf.point.to_viewer, axis, cosine, refracted_cosine(surface, cosine));
+  if (!bsdf.config.lobes.thin_glass) return refracted;
   return cn::select(bsdf.material.thin, mirror_at_plane(reflected, normal, dot(reflected, normal)),
-                    refract(surface, bsdf.point.to_viewer, axis, cosine, refracted_cosine(surface, cosine)));
+                    refracted);
+}
+
+/// Samples of the sphere that go on behind a frosted sheet: the last part of the cosine's share.
+inline mask goes_behind(const Bsdf& bsdf, const WayToSample& way, const poly<double>& choice) {
+  const poly<double> from = 1.0 - bsdf.shares.cosine * bsdf.terms.cosine.share_behind;
+  const mask behind = way.sphere & (choice >= from);
+  return bsdf.config.lobes.sheen ? behind & !way.sheen : behind;
 }
 
 inline Departure depart(const Bsdf& bsdf, const WayToSample& way, const Direction3& axis,
@@ -145,14 +155,18 @@ inline Departure depart(const Bsdf& bsdf, const WayToSample& way, const Directio
   if (!lobes.specular() && !lobes.coat) return {axis, none, {}, {}};
   const poly<double> cosine = clamp_cosine(dot(axis, bsdf.point.to_viewer));
   const Direction3 reflected = reflect(bsdf.point.to_viewer, axis, cosine);
-  const FacetSplit split = lobes.specular() ? split_at_facet(bsdf, cosine) : FacetSplit{};
-  const mask transmits =
+  const bool splits = lobes.smooth_specular() || lobes.transmissive();
+  const FacetSplit split = splits ? split_at_facet(bsdf, cosine) : FacetSplit{};
+  const mask through =
       lobes.transmissive() ? way.specular & (choice >= bsdf.shares.specular * split.reflected_share) : none;
   const Direction3 by_facet = lobes.transmissive()
-                                  ? cn::select(transmits, transmit(bsdf, axis, reflected, cosine), reflected)
+                                  ? cn::select(through, transmit(bsdf, axis, reflected, cosine), reflected)
                                   : reflected;
-  const bool spheres = lobes.cosine() || lobes.sheen;
-  return {spheres ? cn::select(way.sphere, axis, by_facet) : by_facet, transmits, split, cosine};
+  if (!lobes.cosine() && !lobes.sheen) return {by_facet, through, split, cosine};
+  if (!lobes.frosted_sheets()) return {cn::select(way.sphere, axis, by_facet), through, split, cosine};
+  const mask behind = goes_behind(bsdf, way, choice);
+  const Direction3 on_either_side = cn::select(behind, axis * -1.0, axis);
+  return {cn::select(way.sphere, on_either_side, by_facet), through | behind, split, cosine};
 }
 
 /// A sample of a lobe that reflects or refracts into a single direction.

@@ -46,6 +46,12 @@ inline WayToSample choose_way(const Bsdf& bsdf, const poly<double>& choice) {
   return way;
 }
 
+/// Whether a PE samples a smooth specular base.
+inline mask chooses_mirror(const Bsdf& bsdf, const WayToSample& way) {
+  if (!bsdf.config.lobes.rough_specular()) return way.specular;
+  return way.specular & (bsdf.terms.specular.alpha == 0.0);
+}
+
 /// What a way to sample starts from: a cap of the sphere and the viewer's place on it.
 struct Cap {
   poly<double> alpha;
@@ -118,7 +124,8 @@ inline Direction3 sample_axis(const Bsdf& bsdf, const WayToSample& way, const Un
                                     ? (normalizes ? cn::select(way.sheen, turn_to_front(on_cap, normal), axis)
                                                   : turn_to_front(on_cap, normal))
                                     : axis;
-  return lobes.specular() && !caps ? cn::select(way.specular, normal, with_sheen) : with_sheen;
+  if (!lobes.smooth_specular()) return with_sheen;
+  return cn::select(chooses_mirror(bsdf, way), normal, with_sheen);
 }
 
 /// A direction, and how it was found.
@@ -178,8 +185,7 @@ struct DeltaSample {
 inline DeltaSample smooth_base_sample(const Bsdf& bsdf, const WayToSample& way, const Departure& departure) {
   const Lobes& lobes = bsdf.config.lobes;
   const FacetSplit& split = departure.split;
-  const mask chosen =
-      lobes.rough_specular() ? way.specular & (bsdf.terms.specular.alpha == 0.0) : way.specular;
+  const mask chosen = chooses_mirror(bsdf, way);
   const bool shared = lobes.ways_to_sample() > 1;
   if (!lobes.transmissive() && !shared) return {split.reflectance, chosen};
   const poly<double> branch =

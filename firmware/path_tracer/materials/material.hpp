@@ -1,0 +1,106 @@
+#pragma once
+
+#include "firmware/path_tracer/sampling/sampling.hpp"
+
+/// What a BSDF is evaluated from, and what a program is built for.
+namespace path_tracer {
+
+/// Red, green, blue.
+using Rgb = vec3<poly<double>>;
+
+/// The lobes that the materials of a scene have. Mono: a program is built for the scene, so a lobe that no
+/// material has costs no instruction. lobe_table.hpp describes each.
+struct Lobes {
+  bool diffuse = false;
+  bool glossy = false;
+  bool mirror = false;
+  bool glass = false;
+  bool rough_glass = false;
+  bool thin_glass = false;
+  bool coat = false;
+  bool sheen = false;
+  bool absorption = false;
+
+  constexpr bool rough_specular() const { return glossy || rough_glass; }
+  constexpr bool smooth_specular() const { return mirror || glass; }
+  constexpr bool specular() const { return rough_specular() || smooth_specular(); }
+  constexpr bool transmissive() const { return glass || rough_glass; }
+  constexpr bool frosted_sheets() const { return thin_glass && rough_glass; }
+  /// Lobes that are sampled by the cosine: diffuse reflection, and light that rough metal or a frosted sheet
+  /// scatters more than once.
+  constexpr bool cosine() const { return diffuse || glossy || frosted_sheets(); }
+  constexpr int ways_to_sample() const { return int(specular()) + int(cosine()) + int(coat) + int(sheen); }
+  constexpr bool only_diffuse() const { return diffuse && !specular() && !coat && !sheen; }
+  /// Lobes that reflect into more than single directions, so that they can be evaluated.
+  constexpr bool evaluable() const { return cosine() || rough_specular() || coat || sheen; }
+};
+
+/// How a program evaluates its materials; mono.
+struct BsdfConfig {
+  Lobes lobes;
+  /// Shading normals differ from geometric ones. Without it the geometric normal is not looked at.
+  bool shading_normals = false;
+  /// Samples of purely diffuse materials get their density. All others have one anyway.
+  bool diffuse_pdf = false;
+  /// The control unit skips coat and sheen where no PE's material has them.
+  bool skips_absent_lobes = false;
+};
+
+/// The material at a hit, after textures, as seen from the side that the ray arrives from. Fields of lobes
+/// that the program lacks are not read. Colours and shares are in [0, 1].
+struct Material {
+  Rgb base_color;               ///< diffuse reflectance, reflectance of metal, colour of transmission
+  poly<double> metallic;        ///< share of metal
+  poly<double> roughness;       ///< square root of GGX's width alpha
+  poly<double> f0;              ///< reflectance of what is not metal at normal incidence, opaque part
+  poly<double> f90;             ///< the same at grazing incidence: 1, or 0 for a purely diffuse surface
+  poly<double> transmission;    ///< share of the rest that is transmissive
+  poly<double> eta;             ///< refractive index behind the surface / on the ray's side; positive
+  mask thin;                    ///< transmits without refraction, as both sides of a thin sheet do together
+  poly<double> coat;            ///< weight of the clear coat
+  poly<double> coat_roughness;  ///< square root of its alpha
+  Rgb sheen_color;
+  poly<double> sheen_roughness;  ///< square root of the width of sheen's distribution
+};
+
+/// Reflectance at normal incidence of a material with this index of refraction. Index 0 stands for total
+/// reflection (KHR_materials_ior).
+inline double reflectance_at_normal(double index_of_refraction) {
+  const double root = (index_of_refraction - 1.0) / (index_of_refraction + 1.0);
+  return root * root;
+}
+
+/// GGX narrower than this is a mirror, which reflects into a single direction.
+inline constexpr double kSmoothAlpha = 1e-4;
+
+/// Cosines at least this large keep every quotient finite. Directions closer to the surface get no light.
+inline constexpr double kLeastCosine = 1e-12;
+
+inline poly<double> clamp_cosine(const poly<double>& cosine) {
+  return cn::min(cn::max(cosine, poly<double>(kLeastCosine)), poly<double>(1.0));
+}
+
+/// Adds terms of which a program has some: the first costs no instruction.
+class Sum {
+ public:
+  void add(const poly<double>& term) {
+    total_.assign_all_lanes(empty_ ? term : total_ + term);
+    empty_ = false;
+  }
+  const poly<double>& total() const { return total_; }
+
+ private:
+  poly<double> total_ = 0.0;
+  bool empty_ = true;
+};
+
+class RgbSum {
+ public:
+  void add(const Rgb& term) { x_.add(term.x), y_.add(term.y), z_.add(term.z); }
+  Rgb total() const { return {x_.total(), y_.total(), z_.total()}; }
+
+ private:
+  Sum x_, y_, z_;
+};
+
+}  // namespace path_tracer

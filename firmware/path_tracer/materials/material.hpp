@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/path_tracer/records/features.hpp"
 #include "firmware/path_tracer/sampling/sampling.hpp"
 
 /// What a BSDF is evaluated from, and what a program is built for.
@@ -7,33 +8,6 @@ namespace path_tracer {
 
 /// Red, green, blue.
 using Rgb = vec3<poly<double>>;
-
-/// The lobes that the materials of a scene have. Mono: a program is built for the scene, so a lobe that no
-/// material has costs no instruction. lobe_table.hpp describes each.
-struct Lobes {
-  bool diffuse = false;
-  bool glossy = false;
-  bool mirror = false;
-  bool glass = false;
-  bool rough_glass = false;
-  bool thin_glass = false;
-  bool coat = false;
-  bool sheen = false;
-  bool absorption = false;
-
-  constexpr bool rough_specular() const { return glossy || rough_glass; }
-  constexpr bool smooth_specular() const { return mirror || glass; }
-  constexpr bool specular() const { return rough_specular() || smooth_specular(); }
-  constexpr bool transmissive() const { return glass || rough_glass; }
-  constexpr bool frosted_sheets() const { return thin_glass && rough_glass; }
-  /// Lobes that are sampled by the cosine: diffuse reflection, and light that rough metal or a frosted sheet
-  /// scatters more than once.
-  constexpr bool cosine() const { return diffuse || glossy || frosted_sheets(); }
-  constexpr int ways_to_sample() const { return int(specular()) + int(cosine()) + int(coat) + int(sheen); }
-  constexpr bool only_diffuse() const { return diffuse && !specular() && !coat && !sheen; }
-  /// Lobes that reflect into more than single directions, so that they can be evaluated.
-  constexpr bool evaluable() const { return cosine() || rough_specular() || coat || sheen; }
-};
 
 /// How a program evaluates its materials; mono.
 struct BsdfConfig {

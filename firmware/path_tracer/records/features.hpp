@@ -13,6 +13,7 @@ struct Lobes {
   bool mirror = false;
   bool glass = false;
   bool rough_glass = false;
+  bool thin_glass = false;
   bool coat = false;
   bool sheen = false;
   bool absorption = false;
@@ -21,9 +22,10 @@ struct Lobes {
   constexpr bool smooth_specular() const { return mirror || glass; }
   constexpr bool specular() const { return rough_specular() || smooth_specular(); }
   constexpr bool transmissive() const { return glass || rough_glass; }
-  /// Lobes that are sampled by the cosine: diffuse reflection, and light that a rough metal scatters more
-  /// than once.
-  constexpr bool cosine() const { return diffuse || glossy; }
+  constexpr bool frosted_sheets() const { return thin_glass && rough_glass; }
+  /// Lobes that are sampled by the cosine: diffuse reflection, and light that rough metal or a frosted sheet
+  /// scatters more than once.
+  constexpr bool cosine() const { return diffuse || glossy || frosted_sheets(); }
   constexpr int ways_to_sample() const { return int(specular()) + int(cosine()) + int(coat) + int(sheen); }
   constexpr bool only_diffuse() const { return diffuse && !specular() && !coat && !sheen; }
   /// Lobes that reflect into more than single directions, so that they can be evaluated.

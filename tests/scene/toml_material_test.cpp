@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "testbench/scene/save_scene.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/texture/sample.hpp"
 #include "tests/support/image_bytes.hpp"
@@ -234,6 +235,19 @@ TEST_F(TomlMaterialTest, RefusesEnvironmentsThatAreNone) {
   expect_table_error("environment = 3\n", {"mesh.environment"});
   test_support::expect_input_error([&] { load("", "[environment]\nfile = \"text.exr\"\n"); },
                                    {"text.exr: found a file in another format"});
+}
+
+TEST_F(TomlMaterialTest, SavingSaysWhatItLeavesOut) {
+  write("t.png", test_support::png_bytes(1, 1, {1, 2, 3}));
+  const Scene scene = load("reflectance_texture = \"t.png\"", "[environment]\nconstant = [1, 2, 3]\n");
+  const std::string saved = (directory_ / "saved").string();
+  EXPECT_EQ(testbench::save_scene(scene, saved).lines(),
+            (std::vector<std::string>{
+                saved + ": a material is saved without what it has besides reflectance and emission",
+                saved + ": a texture is not saved", saved + ": normals and texture coordinates are not saved",
+                saved + ": the environment is not saved"}));
+  EXPECT_EQ(testbench::load_scene(saved).materials.at(0).reflectance, glm::dvec3(1.0));
+  EXPECT_TRUE(testbench::save_scene(load(""), directory_ / "plain").lines().empty());
 }
 
 TEST(EnvironmentPlace, ComesBackFromItsDirection) {

@@ -165,8 +165,8 @@ std::string allowed_by(const MaterialKey& key) {
   if (key.flag != nullptr) return "true or false";
   if (key.texture != nullptr) return "a PNG or JPEG file, or a table with its file";
   if (key.number == nullptr && key.colour == nullptr) return "opaque, mask, blend";
-  return (key.number != nullptr ? "a number from " : "three numbers from ") + short_text_of(key.least) + " to " +
-         short_text_of(key.most);
+  return (key.number != nullptr ? "a number from " : "three numbers from ") + short_text_of(key.least) +
+         " to " + short_text_of(key.most);
 }
 
 Material read_toml_material(const TableReader& table, const TextureFiles& files) {

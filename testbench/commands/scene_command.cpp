@@ -9,6 +9,7 @@
 #include "testbench/scene/generated_scene.hpp"
 #include "testbench/scene/save_scene.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {
@@ -22,8 +23,9 @@ struct SceneCommand {
   void run() const {
     if (!force) require_no_scene();
     const Scene scene = generate_scene(kind, triangles);
-    save_scene(scene, output);
+    const Notes notes = save_scene(scene, output);
     std::printf("%s: %zu triangles\n", output.c_str(), scene.triangles.size());
+    for (const std::string& line : notes.lines()) print_note(line);
   }
 
  private:

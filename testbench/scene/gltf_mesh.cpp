@@ -50,6 +50,7 @@ class Collector {
     add_back_sides();
     complete_corner_attributes(result_.mesh.corners, result_.mesh.triangles.size());
     keep_used_materials(materials_, result_.mesh);
+    forget_masks();
     result_.mesh.notes.add(document_.notes());
   }
 
@@ -238,6 +239,15 @@ class Collector {
       set_corner_attributes(result_.mesh.corners, triangles.size(),
                             from_behind(corner_attributes_of(result_.mesh.corners, place)));
       triangles.push_back(back);
+    }
+  }
+
+  /// What a mask without a texture cuts out is gone: the rest is opaque.
+  void forget_masks() {
+    for (Material& material : result_.mesh.materials) {
+      if (material.alpha_mode != AlphaMode::mask || material.textures.alpha) continue;
+      material.alpha_mode = AlphaMode::opaque;
+      material.alpha = 1.0;
     }
   }
 

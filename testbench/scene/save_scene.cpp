@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <glm/gtc/constants.hpp>
@@ -83,9 +84,23 @@ std::string toml_of(const Scene& scene) {
   return text.str();
 }
 
+/// What the files do not hold.
+Notes notes_of_saving(const Scene& scene, const std::string& where) {
+  Notes notes;
+  const auto rich = std::count_if(scene.materials.begin(), scene.materials.end(),
+                                  [](const Material& material) { return !is_plain(material); });
+  notes.add("a material is saved without what it has besides reflectance and emission", where,
+            std::size_t(rich));
+  notes.add("a texture is not saved", where, scene.textures.size());
+  notes.add("normals and texture coordinates are not saved", where, scene.corners.is_empty() ? 0 : 1);
+  notes.add("the environment is not saved", where, scene.environment.is_lit() ? 1 : 0);
+  notes.add("a light without area is not saved", where, scene.lights.size());
+  return notes;
+}
+
 }  // namespace
 
-void save_scene(const Scene& scene, const std::filesystem::path& directory) {
+Notes save_scene(const Scene& scene, const std::filesystem::path& directory) {
   std::error_code error;
   const bool is_new = std::filesystem::create_directories(directory, error);
   if (!std::filesystem::is_directory(directory))
@@ -98,6 +113,7 @@ void save_scene(const Scene& scene, const std::filesystem::path& directory) {
     if (is_new) std::filesystem::remove(directory, error);  // only if it is empty
     throw;
   }
+  return notes_of_saving(scene, directory.string());
 }
 
 }  // namespace testbench

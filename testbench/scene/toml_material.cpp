@@ -58,9 +58,9 @@ std::vector<MaterialKey> make_material_keys() {
       number_key("sheen_roughness", &M::sheen_roughness, 0.0, 1.0, "its roughness"),
       MaterialKey{"alpha_mode", "whether alpha counts"},
       number_key("alpha", &M::alpha, 0.0, 1.0, "coverage"),
-      number_key("alpha_cutoff", &M::alpha_cutoff, 0.0, 1e12, "least alpha that \"mask\" shows"),
+      number_key("alpha_cutoff", &M::alpha_cutoff, 0.0, 1.0, "least alpha that \"mask\" shows"),
       flag_key("double_sided", &M::is_double_sided, "normals face the viewer"),
-      number_key("normal_scale", &M::normal_scale, -1e12, 1e12, "strength of normal_texture"),
+      number_key("normal_scale", &M::normal_scale, -100.0, 100.0, "strength of normal_texture"),
       texture_key("reflectance_texture", &T::reflectance, "reflectance", "sRGB"),
       texture_key("metallic_texture", &T::metallic, "metallic", "one channel"),
       texture_key("roughness_texture", &T::roughness, "roughness", "one channel"),
@@ -69,6 +69,15 @@ std::vector<MaterialKey> make_material_keys() {
       texture_key("transmission_texture", &T::transmission, "transmission", "one channel"),
       texture_key("alpha_texture", &T::alpha, "alpha", "one channel"),
   };
+}
+
+/// "0.25", "1e12"
+std::string short_text_of(double number) {
+  std::ostringstream text;
+  text << number;
+  std::string result = text.str();
+  if (const std::size_t plus = result.find('+'); plus != std::string::npos) result.erase(plus, 1);
+  return result;
 }
 
 /// Reads a texture: a file's name, or a table of it and how it is looked up.
@@ -156,13 +165,8 @@ std::string allowed_by(const MaterialKey& key) {
   if (key.flag != nullptr) return "true or false";
   if (key.texture != nullptr) return "a PNG or JPEG file, or a table with its file";
   if (key.number == nullptr && key.colour == nullptr) return "opaque, mask, blend";
-  std::ostringstream text;
-  text << (key.number != nullptr ? "a number from " : "three numbers from ") << key.least << " to ";
-  if (key.most == kMaxEmission)
-    text << "1e12";
-  else
-    text << key.most;
-  return text.str();
+  return (key.number != nullptr ? "a number from " : "three numbers from ") + short_text_of(key.least) +
+         " to " + short_text_of(key.most);
 }
 
 Material read_toml_material(const TableReader& table, const TextureFiles& files) {

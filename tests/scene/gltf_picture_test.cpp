@@ -7,6 +7,7 @@
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/image_bytes.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -192,7 +193,9 @@ TEST_F(GltfPicture, SaysWhatItLeavesOut) {
   for (const auto& [material, part] : materials) {
     SCOPED_TRACE(part);
     GltfBuilder file = triangle_file({}, {{"material", 0}});
-    file.root["textures"] = json::array({json::object()});
+    const std::size_t view = file.add_bytes(test_support::png_bytes(1, 1, {1, 2, 3}));
+    file.root["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
+    file.root["textures"] = {{{"source", 0}}};
     file.add("materials", material);
     const Mesh mesh = load(file);
     expect_note(mesh, part);
@@ -201,6 +204,7 @@ TEST_F(GltfPicture, SaysWhatItLeavesOut) {
   }
   GltfBuilder light = triangle_file();
   light.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  light.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
   expect_note(load(light), "KHR_lights_punctual");
   GltfBuilder lines = triangle_file();
   json& primitives = lines.root["meshes"][0]["primitives"];

@@ -342,7 +342,8 @@ TEST_F(ObjMeshTest, what_materials_in_use_leave_out_is_one_note_a_kind) {
             (std::vector<std::string>{file + "10: d: transparency is left out, 2 times",
                                       file + "12: Ks: gloss is left out, surfaces are diffuse",
                                       file + "13: map_Kd: a texture is left out, 2 times",
-                                      file + "15: shine: an unknown keyword of MTL is left out, 2 times"}));
+                                      file + "15: shine: an unknown keyword of MTL is left out, 2 times",
+                                      file + "13: map_Kd: a b.png: a texture is missing, 2 times"}));
 }
 
 TEST_F(ObjMeshTest, refuses_bad_colours) {

@@ -11,6 +11,7 @@
 #include "firmware/path_tracer/geometry/triangle_record.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/faces.hpp"
+#include "testbench/scene/normalise.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -283,6 +284,10 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   if (config.uses_tree())
     std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
   return image;
+}
+
+MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config) {
+  return make_mono_image(normalised(scene), num_pes, config);
 }
 
 }  // namespace testbench

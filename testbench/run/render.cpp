@@ -111,7 +111,7 @@ class Run {
   static MonoImage checked_image(const Scene& scene, const RenderOptions& options) {
     path_tracer::validate(options.program);
     require_memory_for_triangles(scene, options);
-    MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
+    MonoImage image = make_normal_mono_image(scene, options.chip.chip.pes, options.program);
     require_mono_memory(image, options.chip);
     return image;
   }

@@ -9,7 +9,7 @@ namespace testbench {
 Recording record_render(const Scene& scene, const RenderOptions& options) {
   TimingStream stream;
   RenderResult result = render_natively(scene, options, {}, &stream);
-  return {make_mono_image(scene, options.chip.chip.pes, options.program), std::move(stream),
+  return {make_normal_mono_image(scene, options.chip.chip.pes, options.program), std::move(stream),
           std::move(result)};
 }
 

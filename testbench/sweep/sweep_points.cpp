@@ -27,7 +27,7 @@ bool is_audited(const std::string& id, const SweepFile& file) {
 
 /// What the firmware sees of a scene: the host's image of it, for a firmware that all scenes share.
 std::string scene_digest(const Scene& scene) {
-  const MonoImage image = make_mono_image(scene, cn::kStripLanes, path_tracer::ProgramConfig());
+  const MonoImage image = make_normal_mono_image(scene, cn::kStripLanes, path_tracer::ProgramConfig());
   return sha256({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
 }
 

@@ -1,0 +1,31 @@
+#include "testbench/scene/normalise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace testbench {
+namespace {
+
+double largest_coordinate(const Scene& scene) {
+  double largest = 0.0;
+  for (const Triangle& triangle : scene.triangles)
+    for (const glm::dvec3& vertex : triangle.vertex)
+      largest = std::max({largest, std::abs(vertex.x), std::abs(vertex.y), std::abs(vertex.z)});
+  return largest;
+}
+
+}  // namespace
+
+Scene normalised(const Scene& scene) {
+  Scene result = scene;
+  const double largest = largest_coordinate(scene);
+  if (!(largest > 0.0)) return result;
+  // A power of two below 2^-1022 has no inverse; coordinates that small keep their unit's lowest bits anyway.
+  const double scale = std::ldexp(1.0, -std::max(std::ilogb(largest), -1022));
+  result.camera.position *= scale;
+  for (Triangle& triangle : result.triangles)
+    for (glm::dvec3& vertex : triangle.vertex) vertex *= scale;
+  return result;
+}
+
+}  // namespace testbench

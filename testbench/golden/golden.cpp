@@ -9,6 +9,7 @@
 #include "testbench/files/input_file.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/system/error.hpp"
@@ -165,17 +166,22 @@ std::vector<std::pair<std::string, const FlatStatistics*>> runs_of(const GoldenT
 
 }  // namespace
 
-GoldenTables run_golden(const GoldenGrid& grid, int jobs, const std::function<void(double)>& progress) {
-  std::map<std::string, Scene> scenes;
+GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed) {
+  GoldenScenes scenes;
   for (const GoldenRun& run : grid.runs)
     if (scenes.count(run.scene) == 0) {
-      Scene scene = load_scene(run.scene);
+      Scene scene = load_scene(run.scene, is_outside_allowed);
       scene.film = grid.film;
       scenes.emplace(run.scene, std::move(scene));
     }
+  return scenes;
+}
+
+GoldenTables run_golden(const GoldenGrid& grid, const GoldenScenes& scenes, int jobs,
+                        const std::function<void(double)>& progress) {
   std::vector<std::function<std::string()>> work;
   for (const GoldenRun& run : grid.runs)
-    work.emplace_back([&] { return Json(kept_of(run, scenes.at(run.scene))).dump(); });
+    work.emplace_back([&] { return json_text(kept_of(run, scenes.at(run.scene))); });
   const std::vector<std::string> results = run_in_processes(work, jobs, [&](int finished) {
     if (progress) progress(finished / double(work.size()));
   });

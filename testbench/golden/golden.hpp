@@ -47,8 +47,14 @@ GoldenGrid read_golden_grid(const std::filesystem::path& directory);
 using GoldenTable = std::vector<std::pair<std::string, FlatStatistics>>;
 using GoldenTables = std::map<std::string, GoldenTable>;
 
+/// The scenes of all runs by path, with the grid's film. Throws InputError.
+/// @param is_outside_allowed see load_scene()
+using GoldenScenes = std::map<std::string, Scene>;
+GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed = false);
+
 /// Runs them, each in a process of its own.
-GoldenTables run_golden(const GoldenGrid& grid, int jobs, const std::function<void(double)>& progress = {});
+GoldenTables run_golden(const GoldenGrid& grid, const GoldenScenes& scenes, int jobs,
+                        const std::function<void(double)>& progress = {});
 
 /// The .csv files of the directory. Throws InputError for one that is not a table.
 GoldenTables read_golden(const std::filesystem::path& directory);

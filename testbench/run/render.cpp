@@ -63,7 +63,7 @@ class Run {
       : options_(options),
         image_(checked_image(scene, options)),
         relay_(scene, options.work, progress),
-        result_(Film(scene.film, film_scale(scene))) {}
+        result_(Film(scene.film, film_scale(scene), options.film_sums)) {}
 
   const MonoImage& image() const { return image_; }
   RenderResult& result() { return result_; }

@@ -23,6 +23,7 @@ Scene normalised(const Scene& scene) {
   // A power of two below 2^-1022 has no inverse; coordinates that small keep their unit's lowest bits anyway.
   const double scale = std::ldexp(1.0, -std::max(std::ilogb(largest), -1022));
   result.camera.position *= scale;
+  if (result.camera.orthographic_height) *result.camera.orthographic_height *= scale;
   for (Triangle& triangle : result.triangles)
     for (glm::dvec3& vertex : triangle.vertex) vertex *= scale;
   return result;

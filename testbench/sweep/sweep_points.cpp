@@ -33,8 +33,8 @@ std::string scene_digest(const Scene& scene) {
 
 }  // namespace
 
-Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides)
-    : keys_(file.keys()), base_(file.base) {
+Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides, bool is_outside_allowed)
+    : keys_(file.keys()), base_(file.base), is_outside_allowed_(is_outside_allowed) {
   for (const SweepAxis& axis : file.axes) axes_.push_back(axis.keys);
   for (const Setting& setting : overrides) {
     require_setting(setting);
@@ -88,7 +88,8 @@ const Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
     if (run.scene.empty())
       throw InputError("scene: found none; allowed: a directory with a scene.toml, or a .toml file");
     loaded = std::make_unique<LoadedScene>();
-    loaded->scene = load_scene(run.scene);
+    loaded->scene = load_scene(run.scene, is_outside_allowed_);
+    notes_.emplace(run.scene, loaded->scene.notes);
     if (!run.size.empty()) loaded->scene.film = *parse_film_size(run.size);
     loaded->digest = scene_digest(loaded->scene);
   }

@@ -214,7 +214,7 @@ class CameraSampling : public Sampling {
   static CameraRecord readable_camera(int width, int height) {
     CameraRecord camera;
     camera.position = {5, 6, 7};
-    camera.corner = {0, 0, 1};
+    camera.direction = {0, 0, 1};
     camera.right = {1, 0, 0};
     camera.down = {0, 1, 0};
     camera.width = width;
@@ -308,7 +308,7 @@ TEST_F(CameraSampling, TheLastRowsOfEveryWidth) {
 
 TEST_F(CameraSampling, DirectionsGoThroughTheFilm) {
   CameraRecord camera;
-  camera.corner = {-3, 2, 4};
+  camera.direction = {-3, 2, 4};
   camera.right = {0.5, 0.25, 0};
   camera.down = {0, -0.5, 0.125};
   camera.width = 40;

@@ -47,6 +47,10 @@ class Golden : public testing::Test {
 
 const std::string kHead = "width = 6\nheight = 4\nsamples = 1\n";
 
+testbench::GoldenTables run(const GoldenGrid& grid, int jobs) {
+  return testbench::run_golden(grid, testbench::load_golden_scenes(grid), jobs);
+}
+
 std::string product(const std::string& more) {
   return "[[grid]]\nscene = [\"" + std::string(CSX600_SCENES_DIR) + "/cornell_box\"]\n" + more;
 }
@@ -144,7 +148,7 @@ TEST_F(Golden, TreesHaveATraversalAFormatAndAWidth) {
   EXPECT_EQ(read.runs[0].name, "segments n1 both lt");
   EXPECT_EQ(read.runs[1].name, "segments n1 both lt refill fp64 2");
   EXPECT_EQ(read.runs[2].name, "segments n1 both lt refill fp64 8");
-  const GoldenTables found = testbench::run_golden(read, 1);
+  const GoldenTables found = run(read, 1);
   const auto value = [&](std::size_t run, const std::string& key) -> std::string {
     for (const auto& [name, counter] : found.at("cornell_box-csx600.csv")[run].second)
       if (name == key) return counter.dump();
@@ -156,7 +160,7 @@ TEST_F(Golden, TreesHaveATraversalAFormatAndAWidth) {
 }
 
 TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {
-  const GoldenTables found = testbench::run_golden(grid(kHead + kTwoChips), 2);
+  const GoldenTables found = run(grid(kHead + kTwoChips), 2);
   ASSERT_EQ(found.size(), 2u);
   ASSERT_EQ(found.at("cornell_box-paper.csv").size(), 8u);
   write("cornell_box-gone.csv", "key,a\n");
@@ -170,7 +174,7 @@ TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {
 }
 
 TEST_F(Golden, WhatMovedIsNamedWithItsRunsAndDistance) {
-  const GoldenTables kept = testbench::run_golden(grid(kHead + kTwoChips), 2);
+  const GoldenTables kept = run(grid(kHead + kTwoChips), 2);
   const auto set = [](GoldenTables& tables, std::size_t run, const std::string& key, double factor) {
     for (auto& [name, value] : tables.at("cornell_box-paper.csv")[run].second)
       if (name == key) value = value.get<double>() * factor;
@@ -193,11 +197,11 @@ TEST_F(Golden, WhatMovedIsNamedWithItsRunsAndDistance) {
 }
 
 TEST_F(Golden, RunsEqualWhatAnotherParameterMoves) {
-  const GoldenTables kept = testbench::run_golden(grid(kHead + kOneRun), 1);
-  EXPECT_EQ(testbench::golden_moves(kept, testbench::run_golden(grid(kHead + kOneRun), 1)), "");
+  const GoldenTables kept = run(grid(kHead + kOneRun), 1);
+  EXPECT_EQ(testbench::golden_moves(kept, run(grid(kHead + kOneRun), 1)), "");
   GoldenGrid slower = grid(kHead + kOneRun);
   slower.runs[0].options.chip.pio.setup_cycles += 1;
-  const std::string moves = testbench::golden_moves(kept, testbench::run_golden(slower, 1));
+  const std::string moves = testbench::golden_moves(kept, run(slower, 1));
   EXPECT_NE(moves.find("chip.pio.setup_cycles: in 1 of 1 runs"), std::string::npos) << moves;
   EXPECT_EQ(moves.find("image_sha256"), std::string::npos) << moves;
 }

@@ -13,6 +13,7 @@
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/message_text.hpp"
 #include "testbench/system/processes.hpp"
 
 namespace testbench {
@@ -199,7 +200,9 @@ GoldenTables read_golden(const fs::path& directory) {
 }
 
 void write_golden(const fs::path& directory, const GoldenTables& tables) {
-  for (const auto& [file, table] : tables) write_bytes_atomically(directory / file, table_csv(table));
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (const auto& [file, table] : tables) files.emplace_back(directory / file, table_csv(table));
+  write_together(files);
   for (const auto& [file, table] : read_golden(directory))
     if (tables.count(file) == 0) fs::remove(directory / file);
 }
@@ -223,7 +226,7 @@ std::string golden_moves(const GoldenTables& kept, const GoldenTables& found) {
     }
     before.erase(old);
   }
-  for (const auto& [run, values] : before) text += "  run gone: " + run + '\n';
+  for (const auto& [run, values] : before) text += "  run gone: " + shortened(printable(run)) + '\n';
   for (const std::string& key : order) text += move_line(key, moves[key], after.size());
   return text;
 }

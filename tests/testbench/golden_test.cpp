@@ -77,7 +77,10 @@ TEST_F(Golden, GridIsEveryCombination) {
 }
 
 TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
-  EXPECT_NE(refusal("width = ").find("grid.toml: cannot be read as TOML"), std::string::npos);
+  EXPECT_NE(refusal("width = ").find("grid.toml:1: cannot be read as TOML"), std::string::npos);
+  EXPECT_NE(refusal("height = 4\nwidth = ").find("grid.toml:2: cannot"), std::string::npos);
+  EXPECT_EQ(refusal("height = 4\nwidth = 0.5\nsamples = 1\n" + kOneRun),
+            "grid.toml:2: width: found '0.5', allowed is an integer from 1 to 10000");
   EXPECT_EQ(refusal("height = 4\nsamples = 1\n" + kOneRun),
             "grid.toml: width: found none, allowed is an integer from 1 to 10000");
   EXPECT_EQ(refusal(kHead), "grid.toml: grid: found none, allowed is one [[grid]] or more");
@@ -108,6 +111,21 @@ TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
             "grid.toml:6: samples: found it in a [[grid]], allowed is width, height and samples of the whole "
             "file, above");
   EXPECT_EQ(of_key("firmware.depth = [2]").rfind("grid.toml:6: found the key 'firmware.depth'", 0), 0u);
+}
+
+TEST_F(Golden, ChipFilesAreRelativeToTheGrid) {
+  std::filesystem::create_directories(directory_ / "chips/other");
+  write("chips/slow.toml", "preset = \"csx600\"\n[pio]\nsetup_cycles = 777\n");
+  const GoldenGrid read = grid(kHead + product("chip = [\"chips/slow.toml\"]\n"));
+  ASSERT_EQ(read.runs.size(), 1u);
+  EXPECT_EQ(read.runs[0].options.chip.pio.setup_cycles, 777);
+  EXPECT_EQ(read.runs[0].file, "cornell_box-slow.csv");
+  EXPECT_EQ(refusal(kHead + product("chip = [\"slow.toml\"]\n")).rfind("grid.toml:6: ", 0), 0u);
+  write("chips/other/slow.toml", "preset = \"csx600\"\n");
+  EXPECT_NE(refusal(kHead + product("chip = [\"chips/slow.toml\", \"chips/other/slow.toml\"]\n"))
+                .find("allowed is files of different names"),
+            std::string::npos)
+      << "the second one would take the place of the first";
 }
 
 TEST_F(Golden, NamesOfEarlierGridsAreRefusedWithTheNewOnes) {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace testbench {
-namespace {
 
 double largest_coordinate(const Scene& scene) {
   double largest = 0.0;
@@ -13,8 +12,6 @@ double largest_coordinate(const Scene& scene) {
       largest = std::max({largest, std::abs(vertex.x), std::abs(vertex.y), std::abs(vertex.z)});
   return largest;
 }
-
-}  // namespace
 
 Scene normalised(const Scene& scene) {
   Scene result = scene;

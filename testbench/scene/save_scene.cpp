@@ -78,10 +78,9 @@ std::string toml_of(const Scene& scene) {
   else
     camera_table.insert("vertical_fov_degrees",
                         camera.vertical_field_of_view_radians * (180.0 / glm::pi<double>()));
-  const toml::table table{
-      {"camera", std::move(camera_table)},
-      {"film", toml::table{{"width", scene.film.width}, {"height", scene.film.height}}},
-      {"mesh", toml::array{toml::table{{"file", "mesh.obj"}}}}};
+  const toml::table table{{"camera", std::move(camera_table)},
+                          {"film", toml::table{{"width", scene.film.width}, {"height", scene.film.height}}},
+                          {"mesh", toml::array{toml::table{{"file", "mesh.obj"}}}}};
   std::ostringstream text;
   text << table << "\n";
   return text.str();

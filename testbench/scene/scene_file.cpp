@@ -10,6 +10,7 @@
 #include "testbench/files/input_file.hpp"
 #include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
+#include "testbench/scene/normalise.hpp"
 #include "testbench/scene/obj_mesh.hpp"
 #include "testbench/scene/ply_mesh.hpp"
 #include "testbench/scene/repeated_triangles.hpp"
@@ -91,7 +92,8 @@ Camera read_camera(const TableReader& table) {
                       "film_height", "orthographic_height"});
   Camera camera;
   camera.position = table.vector("position");
-  const char* const direction_key = table.group_of({{"look_at"}, {"direction"}}) == 0 ? "look_at" : "direction";
+  const char* const direction_key =
+      table.group_of({{"look_at"}, {"direction"}}) == 0 ? "look_at" : "direction";
   const glm::dvec3 target = table.vector(direction_key);
   const glm::dvec3 direction = table.has("look_at") ? target - camera.position : target;
   if (direction == glm::dvec3(0.0)) {
@@ -222,6 +224,16 @@ std::optional<Camera> add_meshes(const toml::table& root, const std::filesystem:
   return camera;
 }
 
+/// In the scene's normal unit (normalise.hpp) the camera, too, has coordinates that are allowed.
+void require_camera_in_reach(const Scene& scene, const std::filesystem::path& file) {
+  const Camera& camera = scene.camera;
+  const double farthest = std::max({std::abs(camera.position.x), std::abs(camera.position.y),
+                                    std::abs(camera.position.z), camera.orthographic_height.value_or(0.0)});
+  if (farthest / largest_coordinate(scene) <= kMaxCoordinate) return;
+  fail_at_key(file.string(), "camera", "a position or height that is too large for the meshes",
+              "at most 1e100 times the largest coordinate of a mesh");
+}
+
 void add_light_with_note(Scene& scene, const std::filesystem::path& file) {
   add_default_light(scene);
   scene.notes.add(
@@ -281,6 +293,7 @@ Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
   Scene scene = has_suffix(file, {".toml"}) ? toml_scene(file, is_outside_allowed)
                                             : mesh_scene(file, is_outside_allowed);
   if (scene.triangles.empty()) fail_at_key(file.string(), "mesh", "no triangle with an area", "one or more");
+  require_camera_in_reach(scene, file);
   if (!has_light(scene)) add_light_with_note(scene, file);
   scene.notes.add("a triangle without area is left out", file.string(), scene.degenerate_triangles);
   scene.notes.add("a triangle that repeats another one is left out", file.string(),

@@ -72,6 +72,24 @@ TEST_F(LimitedMachine, NoOutputIsHalfWritten) {
   expect_failure({"params", "--json", "p.json"}, {"p.json", "cannot be written"});
 }
 
+TEST_F(LimitedMachine, NoChartIsHalfDrawn) {
+  ASSERT_EQ(
+      run({"bench", "reference", kCornellBox, "--size", "8x8", "--samples", "2", "-o", "r.exr"}).exit_code,
+      0);
+  for (const char* chart : {"c.png", "c.svg"}) {
+    const Words command = {"bench",    "error",     kCornellBox, "--reference", "r.exr",
+                           "--native", "--samples", "2",         "--plot",      chart};
+    const CommandResult whole = run(command);
+    EXPECT_EQ(whole.exit_code, 0) << whole.error;
+    if (!std::filesystem::remove(directory() / chart)) GTEST_SKIP() << "gnuplot is not installed";
+    const Limit limit(RLIMIT_FSIZE, 3000);
+    const CommandResult cut = run(command);
+    EXPECT_EQ(cut.exit_code, 1);
+    EXPECT_NE(cut.error.find(std::string(chart) + ": "), std::string::npos) << cut.error;
+    EXPECT_EQ(files(), Words{"r.exr"});
+  }
+}
+
 TEST_F(LimitedMachine, ASweepKeepsWhatItHasFinished) {
   write("s.toml", "scene = \"" + kCornellBox +
                       "\"\nsize = \"4x3\"\nsamples = 1\n[[axis]]\npio.setup_cycles = [1, 2, 3, 4]\n");

@@ -195,6 +195,16 @@ TEST_F(SceneFileTest, a_mesh_that_a_transform_flattens_is_refused) {
                {"scene.toml", "mesh", "no triangle with an area"});
 }
 
+TEST_F(SceneFileTest, a_camera_is_not_too_far_from_a_mesh_or_too_large_for_it) {
+  const std::string tiny = kMesh + std::string("scale = 1e-90\n");
+  EXPECT_NO_THROW(
+      load("[camera]\nposition = [0, 0, -9e9]\ndirection = [0, 0, 1]\nvertical_fov_degrees = 40\n" + tiny));
+  for (const std::string camera : {"position = [0, 9e11, 0]\nvertical_fov_degrees = 40\n",
+                                   "position = [0, 0, 0]\northographic_height = 9e11\n"})
+    expect_error("[camera]\ndirection = [0, 0, 1]\n" + camera + tiny,
+                 {"scene.toml", "camera", "too large", "1e100 times"});
+}
+
 TEST_F(SceneFileTest, an_orthographic_camera_has_a_height) {
   const std::string aimed = "[camera]\nposition = [1, 2, 3]\ndirection = [0, 0, -2]\n";
   const Scene scene = load(aimed + "orthographic_height = 2.5\n" + kMesh);

@@ -80,7 +80,8 @@ std::vector<CurvePoint> BenchErrorCommand::measure(const Scene& loaded, const Ex
   std::vector<bool> counts = light_pixels(loaded);
   counts.flip();
   if (std::find(counts.begin(), counts.end(), true) == counts.end())
-    throw InputError(scene.path() + ": found the light in every pixel; allowed: at least one pixel without it");
+    throw InputError(scene.path() +
+                     ": found the light in every pixel; allowed: at least one pixel without it");
   Film film(loaded.film, film_scale(loaded), options.film_sums);
   Film timed_film = film;
   std::vector<CurvePoint> points;

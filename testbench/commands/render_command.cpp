@@ -52,8 +52,7 @@ RenderRequest RenderCommand::make_request() const {
   request.options.timing = timing.style();
   request.options.level = level.level();
   // An OpenEXR file has the variance, which is 0 of one sample.
-  if (outputs.path("--exr").empty() || options.work.samples == 1)
-    request.options.film_sums = FilmSums::means;
+  if (outputs.path("--exr").empty() || options.work.samples == 1) request.options.film_sums = FilmSums::means;
   if (native && request.options.timing == model::TimingStyle::approximately_timed)
     throw InputError("--timing: found at with --native, a native run has no clock; allowed is lt");
   if (native && observation.any())

@@ -81,8 +81,8 @@ void SweepCommand::forget_failed(const Sweep& sweep, PointStore& store) const {
 void SweepCommand::write_tables(const fs::path& directory, const Sweep& sweep,
                                 const PointStore& store) const {
   const Json json = sweep_json(sweep, store);
-  write_together({{directory / "sweep.json", json_text(json, 1) + "\n"},
-                  {directory / "sweep.csv", sweep_csv(json)}});
+  write_together(
+      {{directory / "sweep.json", json_text(json, 1) + "\n"}, {directory / "sweep.csv", sweep_csv(json)}});
 }
 
 struct Counts {

@@ -46,7 +46,7 @@ std::string gnuplot_script(const LogChart& chart, const std::string& terminal, c
 /// Whether the file ends as its format does. gnuplot ignores failed writes, so a full disk leaves a file that
 /// is cut short.
 bool is_whole(const std::filesystem::path& path, bool is_svg) {
-  // The last chunk of a PNG is empty: its type and checksum (PNG specification, section 11.2.5).
+  // The last chunk of a PNG is empty: its type and checksum (ISO/IEC 15948, "IEND").
   const std::string_view end = is_svg ? std::string_view("</svg>") : std::string_view("IEND\xae\x42\x60\x82");
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;

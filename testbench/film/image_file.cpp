@@ -86,8 +86,8 @@ Imf::FrameBuffer one_row(ExrPixel* first) {
   return buffer;
 }
 
-/// OpenEXR writes through it. OutputFile's destructor writes the line table and hides errors, so that the file
-/// keeps them.
+/// OpenEXR writes through it. OutputFile's destructor writes the line table and hides errors, so that the
+/// file keeps them.
 class ExrStream : public Imf::OStream {
  public:
   ExrStream(CheckedFile& file, const std::filesystem::path& target)

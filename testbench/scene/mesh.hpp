@@ -43,8 +43,8 @@ inline constexpr double kMaxEmission = 1e12;
 
 /// How a mesh file is read.
 struct MeshOptions {
-  FileReach reach;                   ///< of the files that it names
-  std::optional<Material> material;  ///< in place of the default one
+  FileReach reach;                                   ///< of the files that it names
+  std::optional<Material> material;                  ///< in place of the default one
   std::optional<std::string> camera = std::nullopt;  ///< name of the camera to take, or of its node
 };
 

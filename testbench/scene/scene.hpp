@@ -29,9 +29,9 @@ struct Triangle {
 /// up), to the right of a viewer who looks along `direction`; pixel y grows along -up. So with direction +z
 /// and up +y, larger world x lies further left in the picture.
 struct Camera {
-  glm::dvec3 position{0.0};             ///< of the pinhole, or of the orthographic film's centre
-  glm::dvec3 direction{0.0, 0.0, 1.0};  ///< unit length
-  glm::dvec3 up{0.0, 1.0, 0.0};         ///< unit length, orthogonal to direction
+  glm::dvec3 position{0.0};                     ///< of the pinhole, or of the orthographic film's centre
+  glm::dvec3 direction{0.0, 0.0, 1.0};          ///< unit length
+  glm::dvec3 up{0.0, 1.0, 0.0};                 ///< unit length, orthogonal to direction
   double vertical_field_of_view_radians = 0.0;  ///< of a pinhole camera
   /// Height of the film in the scene, which makes the camera orthographic: rays start on the film and run
   /// along `direction`, and what lies behind the film is not seen.

@@ -24,7 +24,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct BenchErrorCommand {
-  std::string scene;
+  SceneArgument scene;
   std::string reference;
   OutputFiles outputs;
   bool native_only = false;
@@ -61,9 +61,9 @@ ExrFilm BenchErrorCommand::load_reference() const {
 }
 
 Scene BenchErrorCommand::load(const ExrFilm& truth) const {
-  Scene loaded = load_scene(scene);
+  Scene loaded = scene.load();
   const auto of_reference = truth.attributes.find("csx600.scene");
-  if (of_reference == truth.attributes.end() || load_scene(of_reference->second).name != loaded.name)
+  if (of_reference == truth.attributes.end() || scene.load_other(of_reference->second).name != loaded.name)
     throw InputError(reference + ": found a reference of another scene; allowed is one of " + loaded.name);
   loaded.film = {truth.width, truth.height};
   return loaded;
@@ -80,8 +80,9 @@ std::vector<CurvePoint> BenchErrorCommand::measure(const Scene& loaded, const Ex
   std::vector<bool> counts = light_pixels(loaded);
   counts.flip();
   if (std::find(counts.begin(), counts.end(), true) == counts.end())
-    throw InputError(scene + ": found the light in every pixel; allowed: at least one pixel without it");
-  Film film(loaded.film, film_scale(loaded));
+    throw InputError(scene.path() +
+                     ": found the light in every pixel; allowed: at least one pixel without it");
+  Film film(loaded.film, film_scale(loaded), options.film_sums);
   Film timed_film = film;
   std::vector<CurvePoint> points;
   CurvePoint sum;
@@ -199,13 +200,14 @@ void BenchErrorCommand::run() {
   require_outputs();
   options.chip = chip.chip();
   options.level = level.level();
+  options.film_sums = FilmSums::means;
   const ExrFilm truth = load_reference();
   const Scene loaded = load(truth);
   std::vector<InputName> inputs = inputs_of(chip, loaded);
   inputs.emplace_back("--reference", reference);
   outputs.require_no_input(inputs);
   const std::vector<CurvePoint> points = measure(loaded, truth);
-  print_notes(loaded);
+  print_notes(loaded.notes);
   std::printf("%s, %d x %d, light's pixels left out, reference %s\n", loaded.name.c_str(), loaded.film.width,
               loaded.film.height, reference.c_str());
   print_table(points, native_only);
@@ -227,7 +229,7 @@ void add_bench_error_command(CLI::App& bench) {
                             "Error against samples, CPU time and simulated time, natively and with "
                             "timing on");
   const auto state = std::make_shared<BenchErrorCommand>();
-  add_scene_argument(command, state->scene);
+  state->scene.add_to(command);
   command
       .add_option("--reference", state->reference, "File of `csx600 bench reference`; sets the film's size")
       ->type_name("FILE")

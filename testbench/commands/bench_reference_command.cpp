@@ -21,8 +21,8 @@ namespace {
 constexpr int kSamplesOfPart = 64;
 
 struct BenchReferenceCommand {
-  std::string scene;
-  std::string size;
+  SceneArgument scene;
+  SizeOption size;
   OutputFiles outputs;
   RenderOptions options;
   ChipOptions chip;
@@ -58,16 +58,17 @@ RenderResult BenchReferenceCommand::render(const Scene& loaded) const {
 
 void BenchReferenceCommand::run() {
   outputs.require_writable();
+  size.require_valid();
   options.chip = chip.chip();
   options.level = level.level();
-  const Scene loaded = load_scene_for_film(scene, size);
+  const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded));
   const RenderResult result = render(loaded);
-  std::map<std::string, std::string> attributes = render_provenance({scene, options, true}, result);
+  std::map<std::string, std::string> attributes = render_provenance({scene.path(), options, true}, result);
   attributes[kSeedAttribute] = std::to_string(options.program.seed);
   const std::string& exr = outputs.path("--output");
   write_exr(exr, result.film, attributes);
-  print_notes(loaded);
+  print_notes(loaded.notes);
   std::printf("%s, %d x %d, %d samples a pixel, seed %llu: %s, %.1f s CPU\n", loaded.name.c_str(),
               loaded.film.width, loaded.film.height, options.work.samples,
               static_cast<unsigned long long>(options.program.seed), exr.c_str(), result.cpu_seconds);
@@ -86,11 +87,11 @@ void add_bench_reference_command(CLI::App& bench) {
   state->options.program.sampler = path_tracer::Sampler::philox;
   state->options.program.light_sampling = path_tracer::LightSampling::area;
   state->options.program.seed = kReferenceSeed;
-  add_scene_argument(command, state->scene);
+  state->scene.add_to(command);
   state->outputs.add_to(command, "-o,--output", "OpenEXR file to write").required();
   in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 2, 1 << 30)
       ->capture_default_str();
-  add_size_option(command, state->size);
+  state->size.add_to(command);
   state->firmware.add_to(command, state->options.program, *path_tracer::find_option("seed"));
   add_jobs_option(command, state->jobs);
   state->chip.add_to(command, "csx600");

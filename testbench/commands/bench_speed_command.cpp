@@ -66,7 +66,7 @@ void add_result(Variant& variant, const Json& result) {
 }
 
 struct BenchSpeedCommand {
-  std::string scene = "scenes/cornell_box";
+  SceneArgument scene{"scenes/cornell_box"};
   ChipOptions chip;
   LevelOption level;
   int samples = 4;
@@ -204,7 +204,7 @@ void print_group(const std::vector<Variant>& variants, const std::string& group,
 Json BenchSpeedCommand::to_json(const std::vector<Variant>& variants) const {
   Json result;
   result["format"] = "csx600-bench-speed-1";
-  result["scene"] = scene;
+  result["scene"] = scene.path();
   result["samples"] = samples;
   result["runs"] = Json::array();
   for (const Variant& variant : variants)
@@ -233,7 +233,7 @@ std::string to_csv(const std::vector<Variant>& variants) {
 
 void BenchSpeedCommand::run() {
   outputs.require_writable();
-  const Scene loaded = load_scene(scene);
+  const Scene loaded = scene.load();
   outputs.require_no_input(inputs_of(chip, loaded));
   std::vector<Variant> variants = make_variants(loaded);
   measure(loaded, variants);
@@ -244,7 +244,7 @@ void BenchSpeedCommand::run() {
   print_group(variants, "waves", "untraced");
   print_group(variants, "PEs", "96");
   print_group(variants, "level", cn::name_of(variants.back().options.level));
-  print_notes(loaded);
+  print_notes(loaded.notes);
   outputs.write("--json", [&] { return statistics_json(to_json(variants)); });
   outputs.write("--csv", [&] { return to_csv(variants); });
 }
@@ -256,7 +256,7 @@ void add_bench_speed_command(CLI::App& bench) {
       "speed",
       "Simulator time of renders: with and without timing, traced, by number of PEs, by x86-64 level");
   const auto state = std::make_shared<BenchSpeedCommand>();
-  add_scene_argument(command, state->scene);
+  state->scene.add_to(command);
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
   add_samples_option(command, state->samples);

@@ -9,6 +9,7 @@
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/system/processes.hpp"
 #include "testbench/system/progress_bar.hpp"
 #include "testbench/validation/timing_comparison.hpp"
@@ -19,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct BenchTimingCommand {
-  std::string scene = "scenes/cornell_box";
+  SceneArgument scene{"scenes/cornell_box"};
   FilmSize film{96, 96};
   ChipOptions chip;
   LevelOption level;
@@ -97,7 +98,7 @@ void BenchTimingCommand::run() const {
   options.chip = chip.chip();
   options.level = level.level();
   options.work.samples = samples;
-  Scene loaded = load_scene(scene);
+  Scene loaded = scene.load();
   outputs.require_no_input(inputs_of(chip, loaded));
   loaded.film = film;
   const std::vector<TimingPoint> points = timing_points(options);
@@ -105,8 +106,8 @@ void BenchTimingCommand::run() const {
   std::printf("%s at %d x %d, %d samples a pixel; chip %s; sweeps: program full, n = 1\n\n",
               loaded.name.c_str(), film.width, film.height, samples, options.chip.preset.c_str());
   print_table(points, comparisons);
-  print_notes(loaded);
-  outputs.write("--json", [&] { return to_json(points, comparisons).dump(2) + "\n"; });
+  print_notes(loaded.notes);
+  outputs.write("--json", [&] { return json_text(to_json(points, comparisons), 2) + "\n"; });
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ void add_bench_timing_command(CLI::App& bench) {
   CLI::App& command = *bench.add_subcommand(
       "timing", "Compare loosely timed cycles with approximately timed ones, on a film of 96 x 96");
   const auto state = std::make_shared<BenchTimingCommand>();
-  add_scene_argument(command, state->scene);
+  state->scene.add_to(command);
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
   add_samples_option(command, state->samples);

@@ -1,12 +1,14 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "model/config/chip_presets.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/paper/paper_alternatives.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -15,9 +17,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CalibrateCommand {
-  std::string scene = "scenes/cornell_box";
+  SceneArgument scene{"scenes/cornell_box"};
   std::string closed_scene = "scenes/cornell_box_closed";
-  std::string size;
+  SizeOption size;
   ChipOptions chip;
   LevelOption level;
   CalibrationOptions options;
@@ -69,10 +71,12 @@ void CalibrateCommand::run() const {
   outputs.require_writable();
   CalibrationOptions fit = options;
   fit.level = level.level();
-  const Assumptions base{"preset paper", chip.chip(), paper_program(), load_scene_for_film(scene, size)};
-  const std::vector<Assumptions> all = alternatives
-                                           ? paper_alternatives(base, load_scene_for_film(closed_scene, size))
-                                           : std::vector<Assumptions>{base};
+  size.require_valid();
+  const Assumptions base{"preset paper", chip.chip(), paper_program(), size.resized(scene.load())};
+  std::optional<Scene> closed;
+  if (alternatives) closed = size.resized(scene.load_other(closed_scene));
+  const std::vector<Assumptions> all =
+      closed ? paper_alternatives(base, *closed) : std::vector<Assumptions>{base};
   for (const Assumptions& assumptions : all) outputs.require_no_input(inputs_of(chip, assumptions.scene));
   std::printf("Three constants fitted to three cells (");
   for (const PaperCell& cell : fitted_cells())
@@ -89,7 +93,9 @@ void CalibrateCommand::run() const {
     rows.push_back(to_json(assumptions, result));
     if (&assumptions == &all.front() && !outputs.path("--write").empty()) write_header(result);
   }
-  outputs.write("--json", [&] { return rows.dump(2) + "\n"; });
+  print_notes(base.scene.notes);
+  if (closed) print_notes(closed->notes);
+  outputs.write("--json", [&] { return json_text(rows, 2) + "\n"; });
 }
 
 }  // namespace
@@ -99,10 +105,10 @@ void add_calibrate_command(CLI::App& app) {
       "calibrate",
       "Fit the constants of preset paper to three cells of the paper's tables, predict the others");
   const auto state = std::make_shared<CalibrateCommand>();
-  add_scene_argument(command, state->scene);
+  state->scene.add_to(command);
   command.add_option("--closed-scene", state->closed_scene, "Scene of the alternative 'closed box'")
       ->capture_default_str();
-  add_size_option(command, state->size);
+  state->size.add_to(command);
   state->chip.add_to(command, "paper");
   state->level.add_to(command);
   add_samples_option(command, state->options.samples);

@@ -18,15 +18,6 @@
 #include "testbench/system/standard_output.hpp"
 
 namespace testbench {
-namespace {
-
-/// "480x480".
-FilmSize parse_size(const std::string& text) {
-  if (const std::optional<FilmSize> size = parse_film_size(text)) return *size;
-  throw InputError("--size: found '" + text + "', allowed is " + allowed_film_size());
-}
-
-}  // namespace
 
 void SetOptions::add_to(CLI::App& command) {
   command.add_option("--set", settings_, "One parameter of the chip, key=value; may be repeated")
@@ -101,20 +92,43 @@ cn::Level LevelOption::level() const {
                    ", this build on this machine has " + allowed);
 }
 
-void add_scene_argument(CLI::App& command, std::string& scene) {
+void ReachOption::add_to(CLI::App& command) {
+  command.add_flag("--allow-outside", is_outside_allowed_,
+                   "Let a scene read files that do not lie below its own folder");
+}
+
+void SceneArgument::add_to(CLI::App& command) {
   CLI::Option* const argument =
       command
-          .add_option("scene", scene,
+          .add_option("scene", path_,
                       "Directory with a scene.toml, a .toml file, or a mesh (.obj, .ply, .gltf, .glb)")
           ->type_name("SCENE");
-  if (scene.empty())
+  if (path_.empty())
     argument->required();
   else
     argument->capture_default_str();
+  reach_.add_to(command);
 }
 
-void add_size_option(CLI::App& command, std::string& size) {
-  command.add_option("--size", size, "Film in pixels")->type_name("WIDTHxHEIGHT")->default_str("the scene's");
+Scene SceneArgument::load_other(const std::string& path) const {
+  return load_scene(path, reach_.is_outside_allowed());
+}
+
+void SizeOption::add_to(CLI::App& command) {
+  command.add_option("--size", size_, "Film in pixels")
+      ->type_name("WIDTHxHEIGHT")
+      ->default_str("the scene's");
+}
+
+void SizeOption::require_valid() const {
+  if (!size_.empty() && !parse_film_size(size_))
+    throw InputError("--size: found '" + size_ + "', allowed is " + allowed_film_size());
+}
+
+Scene SizeOption::resized(Scene scene) const {
+  require_valid();
+  if (!size_.empty()) scene.film = *parse_film_size(size_);
+  return scene;
 }
 
 void add_samples_option(CLI::App& command, int& samples) {
@@ -133,21 +147,8 @@ void add_check_hazards_flag(CLI::App& command, bool& check_hazards) {
       "Stop when the firmware uses what a transfer may still read or write (with kernels built for that)");
 }
 
-Scene load_scene_for_film(const std::string& path, const std::string& size, bool is_outside_allowed) {
-  std::optional<FilmSize> film;
-  if (!size.empty()) film = parse_size(size);
-  Scene loaded = load_scene(path, is_outside_allowed);
-  if (film) loaded.film = *film;
-  return loaded;
-}
-
-void add_allow_outside_flag(CLI::App& command, bool& is_outside_allowed) {
-  command.add_flag("--allow-outside", is_outside_allowed,
-                   "Let the scene read files that do not lie below its own folder");
-}
-
-void print_notes(const Scene& scene) {
-  for (const std::string& line : scene.notes.lines()) print_note(line);
+void print_notes(const Notes& notes) {
+  for (const std::string& line : notes.lines()) print_note(line);
 }
 
 }  // namespace testbench

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/cn/simd/level.hpp"
@@ -69,24 +70,54 @@ void add_jobs_option(CLI::App& command, int& jobs);
 /// --check-hazards.
 void add_check_hazards_flag(CLI::App& command, bool& check_hazards);
 
-/// The scene as the command's first argument. The default is the value in `scene`; without one it is
-/// required.
-void add_scene_argument(CLI::App& command, std::string& scene);
+/// --allow-outside: how far scenes may reach. Every command that loads scenes has it.
+class ReachOption {
+ public:
+  void add_to(CLI::App& command);
+  bool is_outside_allowed() const { return is_outside_allowed_; }
 
-/// --size, for load_scene_for_film().
-void add_size_option(CLI::App& command, std::string& size);
+ private:
+  bool is_outside_allowed_ = false;
+};
+
+/// The scene as the command's first argument, and --allow-outside.
+class SceneArgument {
+ public:
+  /// A scene that must be given.
+  SceneArgument() = default;
+  /// One that is `default_scene` if none is given.
+  explicit SceneArgument(std::string default_scene) : path_(std::move(default_scene)) {}
+
+  void add_to(CLI::App& command);
+  const std::string& path() const { return path_; }
+  /// Throws InputError.
+  Scene load() const { return load_other(path_); }
+  /// Another scene, which may reach as far. Throws InputError.
+  Scene load_other(const std::string& path) const;
+
+ private:
+  std::string path_;
+  ReachOption reach_;
+};
+
+/// --size: the film of a scene.
+class SizeOption {
+ public:
+  void add_to(CLI::App& command);
+  /// Gives the scene a film of the size, if one is given. Throws InputError.
+  Scene resized(Scene scene) const;
+  /// Throws InputError for what is no size; before scenes are loaded, which takes longer.
+  void require_valid() const;
+
+ private:
+  std::string size_;
+};
 
 /// The chip's file and the scene's, for OutputFiles::require_no_input().
 std::vector<InputName> inputs_of(const ChipOptions& chip, const Scene& scene);
 
-/// Loads a scene. Its film has the size `size`, "480x480", unless that is empty. Throws InputError.
-Scene load_scene_for_film(const std::string& path, const std::string& size, bool is_outside_allowed = false);
-
-/// --allow-outside, for load_scene_for_film().
-void add_allow_outside_flag(CLI::App& command, bool& is_outside_allowed);
-
-/// Prints a scene's notes on stderr, a line each. A command calls it at its end, so that no note goes before
+/// Prints notes of scenes on stderr, a line each. A command calls it at its end, so that no note goes before
 /// an error.
-void print_notes(const Scene& scene);
+void print_notes(const Notes& notes);
 
 }  // namespace testbench

@@ -12,17 +12,20 @@ namespace {
 
 struct GoldenCommand {
   std::string directory;
+  ReachOption reach;
   bool update = false;
   int jobs = 1;
 
   void run() const {
     const GoldenGrid grid = read_golden_grid(directory);
     const GoldenTables kept = read_golden(directory);
+    const GoldenScenes scenes = load_golden_scenes(grid, reach.is_outside_allowed());
     GoldenTables found;
     {
       ProgressBar bar("golden runs");
-      found = run_golden(grid, jobs, [&](double share) { bar.show(share); });
+      found = run_golden(grid, scenes, jobs, [&](double share) { bar.show(share); });
     }
+    for (const auto& [path, scene] : scenes) print_notes(scene.notes);
     const std::string moves = golden_moves(kept, found);
     std::fputs(moves.c_str(), stdout);
     std::printf("%zu runs, %s\n", grid.runs.size(), moves.empty() ? "no counter moved" : "moved as listed");
@@ -46,6 +49,7 @@ void add_golden_command(CLI::App& app) {
       ->type_name("DIRECTORY")
       ->required();
   command.add_flag("--update", state->update, "Show what moved and write the tables anew");
+  state->reach.add_to(command);
   add_jobs_option(command, state->jobs);
   command.callback([state] { state->run(); });
 }

@@ -7,6 +7,7 @@
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/run/option_report.hpp"
+#include "testbench/statistics/json_file.hpp"
 
 namespace testbench {
 namespace {
@@ -38,7 +39,7 @@ struct ParamsCommand {
   static std::string json(const model::ChipConfig& config) {
     nlohmann::ordered_json report = nlohmann::ordered_json::parse(model::parameter_json_report(config));
     for (const nlohmann::ordered_json& option : option_json_report()) report.push_back(option);
-    return report.dump(2) + "\n";
+    return json_text(report, 2) + "\n";
   }
 };
 

@@ -26,14 +26,13 @@ namespace testbench {
 namespace {
 
 struct RenderCommand {
-  std::string scene;
-  std::string size;
+  SceneArgument scene;
+  SizeOption size;
   RenderOptions options;
   ChipOptions chip;
   TimingOption timing;
   LevelOption level;
   FirmwareOptions firmware;
-  bool is_outside_allowed = false;
   bool native = false;
   OutputFiles outputs;
   bool statistics_text_wanted = false;
@@ -49,10 +48,12 @@ struct RenderCommand {
 };
 
 RenderRequest RenderCommand::make_request() const {
-  RenderRequest request{scene, options, native};
+  RenderRequest request{scene.path(), options, native};
   request.options.chip = chip.chip();
   request.options.timing = timing.style();
   request.options.level = level.level();
+  // An OpenEXR file has the variance, which is 0 of one sample.
+  if (outputs.path("--exr").empty() || options.work.samples == 1) request.options.film_sums = FilmSums::means;
   if (native && request.options.timing == model::TimingStyle::approximately_timed)
     throw InputError("--timing: found at with --native, a native run has no clock; allowed is lt");
   if (native && observation.any())
@@ -88,7 +89,8 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
     if (observation.any())
       throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
     if (ranks.is_first()) outputs.require_writable(observation.outputs());
-    loaded = load_scene_for_film(scene, size, is_outside_allowed);
+    size.require_valid();
+    loaded = size.resized(scene.load());
     if (ranks.is_first()) outputs.require_no_input(inputs_of(chip, *loaded));
     request.traversal_reason = choose_tree_for(*loaded, request.options);
   } catch (const InputError& wrong) {
@@ -110,13 +112,13 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
   }();
   if (!render) return;
   const std::map<std::string, std::string> provenance = {
-      {"csx600.scene", scene},
+      {"csx600.scene", scene.path()},
       {"csx600.ranks", std::to_string(ranks.size())},
       {"csx600.segments", std::to_string(render->segments)},
       {"csx600.image_sha256", render->film.sha256()}};
   write_image(render->film, provenance);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
-  print_notes(*loaded);
+  print_notes(loaded->notes);
   note_if_black(*loaded, render->film);
   std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments",
               printable(loaded->name).c_str(), loaded->film.width, loaded->film.height,
@@ -132,7 +134,8 @@ void RenderCommand::run() {
   RenderRequest request = make_request();
   outputs.require_writable(observation.outputs());
   require_writable(request.options.observation, request.options.chip);
-  const Scene loaded = load_scene_for_film(scene, size, is_outside_allowed);
+  size.require_valid();
+  const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded), observation.outputs());
   request.traversal_reason = choose_tree_for(loaded, request.options);
   const InterruptGuard interrupt;
@@ -151,7 +154,7 @@ void RenderCommand::run() {
   });
   note_if_black(loaded, result.film);
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
-  print_notes(loaded);
+  print_notes(loaded.notes);
   std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n",
               printable(loaded.name).c_str(), loaded.film.width, loaded.film.height,
               request.options.work.samples, name_of(request.options.program.program),
@@ -170,11 +173,10 @@ void add_render_command(CLI::App& app) {
   const auto state = std::make_shared<RenderCommand>();
   state->options.work.samples = 16;
   state->options.program = path_tracer::default_program();
-  add_scene_argument(command, state->scene);
+  state->scene.add_to(command);
   in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 1, 1 << 30)
       ->capture_default_str();
-  add_size_option(command, state->size);
-  add_allow_outside_flag(command, state->is_outside_allowed);
+  state->size.add_to(command);
   state->chip.add_to(command, "csx600");
   state->timing.add_to(command);
   state->level.add_to(command);

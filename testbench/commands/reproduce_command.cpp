@@ -9,6 +9,7 @@
 #include "testbench/commands/output_files.hpp"
 #include "testbench/paper/paper_runs.hpp"
 #include "testbench/scene/scene_file.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/system/progress_bar.hpp"
 
 namespace testbench {
@@ -25,7 +26,7 @@ struct Cell {
 };
 
 struct ReproduceCommand {
-  std::string scene = "scenes/cornell_box";
+  SceneArgument scene{"scenes/cornell_box"};
   ChipOptions chip;
   TimingOption timing;
   LevelOption level;
@@ -141,10 +142,11 @@ RenderOptions ReproduceCommand::make_options() const {
 void ReproduceCommand::run() const {
   outputs.require_writable();
   const RenderOptions options = make_options();
-  const Scene loaded = load_scene(scene);
+  const Scene loaded = scene.load();
   outputs.require_no_input(inputs_of(chip, loaded));
   if (image) {
     measure_image(loaded, options);
+    print_notes(loaded.notes);
     return;
   }
   const std::vector<Cell> cells = measure(loaded, options);
@@ -155,8 +157,8 @@ void ReproduceCommand::run() const {
   print_table(2, "what is buffered, n = 1", cells);
   std::printf("\n");
   print_summary(cells);
-  print_notes(loaded);
-  outputs.write("--json", [&] { return to_json(cells, options).dump(2) + "\n"; });
+  print_notes(loaded.notes);
+  outputs.write("--json", [&] { return json_text(to_json(cells, options), 2) + "\n"; });
 }
 
 }  // namespace
@@ -165,7 +167,7 @@ void add_reproduce_command(CLI::App& app) {
   CLI::App& command =
       *app.add_subcommand("reproduce", "Run the paper's Tables 1 and 2 and print both side by side");
   const auto state = std::make_shared<ReproduceCommand>();
-  add_scene_argument(command, state->scene);
+  state->scene.add_to(command);
   state->chip.add_to(command, "paper");
   state->timing.add_to(command);
   state->level.add_to(command);

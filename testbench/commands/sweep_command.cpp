@@ -7,6 +7,7 @@
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/files/atomic_file.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/sweep/sweep_run.hpp"
 #include "testbench/sweep/sweep_table.hpp"
 #include "testbench/system/error.hpp"
@@ -29,6 +30,7 @@ struct SweepCommand {
   bool in_full = false;
   bool retry_failed = false;
   int jobs = 1;
+  ReachOption reach;
   const CLI::Option* jobs_option = nullptr;
 
   void run();
@@ -58,7 +60,7 @@ std::unique_ptr<Sweep> SweepCommand::read(Ranks& ranks) const {
   try {
     if (!ranks.alone() && jobs_option->count() > 0)
       throw InputError("--jobs: found under mpirun, where each rank runs one point at a time; leave it out");
-    sweep = std::make_unique<Sweep>(load_sweep_file(file), overrides());
+    sweep = std::make_unique<Sweep>(load_sweep_file(file), overrides(), reach.is_outside_allowed());
   } catch (const InputError& wrong) {
     error = wrong.what();
   }
@@ -79,9 +81,8 @@ void SweepCommand::forget_failed(const Sweep& sweep, PointStore& store) const {
 void SweepCommand::write_tables(const fs::path& directory, const Sweep& sweep,
                                 const PointStore& store) const {
   const Json json = sweep_json(sweep, store);
-  write_bytes_atomically(directory / "sweep.json",
-                         json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  write_bytes_atomically(directory / "sweep.csv", sweep_csv(json));
+  write_together(
+      {{directory / "sweep.json", json_text(json, 1) + "\n"}, {directory / "sweep.csv", sweep_csv(json)}});
 }
 
 struct Counts {
@@ -129,6 +130,7 @@ void SweepCommand::run_first(const Sweep& sweep, Ranks& ranks) const {
     });
   }();
   write_tables(directory, sweep, store);
+  for (const auto& [path, notes] : sweep.notes()) print_notes(notes);
   const Counts counts = count(sweep, store);
   const std::string finished = std::to_string(counts.done + counts.failed) + " of " +
                                std::to_string(sweep.points().size()) + " points are finished in " +
@@ -175,6 +177,7 @@ void add_sweep_command(CLI::App& app) {
   command.add_option("--set", state->settings, "One base value, key=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  state->reach.add_to(command);
   add_jobs_option(command, state->jobs);
   command.add_flag("--full", state->in_full, "Run every point in full instead of replaying streams");
   command.add_flag("--retry-failed", state->retry_failed, "Run points again that failed");

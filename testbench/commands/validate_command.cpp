@@ -5,6 +5,7 @@
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/system/progress_bar.hpp"
 #include "testbench/validation/validation.hpp"
 
@@ -29,7 +30,7 @@ struct ValidateCommand {
       validation = validate(options, [&](double share) { bar.show(share); });
     }
     std::fputs(validation_text(validation).c_str(), stdout);
-    outputs.write("--json", [&] { return to_json(validation).dump(2) + "\n"; });
+    outputs.write("--json", [&] { return json_text(to_json(validation), 2) + "\n"; });
     outputs.write("--csv", [&] { return validation_csv(validation); });
   }
 };

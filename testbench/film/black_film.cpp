@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "testbench/mono_image/faces.hpp"
-#include "testbench/mono_image/mono_image.hpp"
+#include "testbench/scene/film_ray.hpp"
+#include "testbench/scene/normalise.hpp"
 
 namespace testbench {
 namespace {
@@ -46,25 +47,21 @@ double distance_to(const Triangle& triangle, const glm::dvec3& origin, const glm
 
 /// What the rays of the grid meet; rays that leave the scene are left out.
 std::vector<ViewedPoint> viewed_points(const Scene& scene) {
-  const Camera& camera = scene.camera;
-  const double half_height = std::tan(0.5 * camera.vertical_field_of_view_radians);
-  const double half_width = half_height * scene.film.width / scene.film.height;
   std::vector<ViewedPoint> points;
   for (int cell = 0; cell < kGridSide * kGridSide; ++cell) {
-    const auto place = [](int i) { return (2 * i + 1) / double(kGridSide) - 1; };
-    const glm::dvec3 direction =
-        camera.direction + half_width * place(cell % kGridSide) * glm::cross(camera.direction, camera.up) -
-        half_height * place(cell / kGridSide) * camera.up;
+    const auto place = [](int i, int pixels) { return (i + 0.5) / kGridSide * pixels; };
+    const FilmRay ray = film_ray(scene, place(cell % kGridSide, scene.film.width),
+                                 place(cell / kGridSide, scene.film.height));
     double nearest = std::numeric_limits<double>::infinity();
     const Triangle* hit = nullptr;
     for (const Triangle& triangle : scene.triangles)
-      if (const double distance = distance_to(triangle, camera.position, direction); distance < nearest) {
+      if (const double distance = distance_to(triangle, ray.origin, ray.direction); distance < nearest) {
         nearest = distance;
         hit = &triangle;
       }
     if (hit != nullptr)
       points.push_back(
-          {hit, camera.position + nearest * direction, glm::dot(area_normal(*hit), direction) > 0});
+          {hit, ray.origin + nearest * ray.direction, glm::dot(area_normal(*hit), ray.direction) > 0});
   }
   return points;
 }
@@ -90,7 +87,8 @@ bool is_black(const Film& film) {
   return true;
 }
 
-std::string why_black(const Scene& scene) {
+std::string why_black(const Scene& any_unit) {
+  const Scene scene = normalised(any_unit);
   const std::vector<ViewedPoint> points = viewed_points(scene);
   if (points.empty()) return "the camera sees no surface; it may look away from the scene";
   if (!any_light_faces(scene, points))

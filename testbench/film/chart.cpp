@@ -4,10 +4,13 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "testbench/files/atomic_file.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/message_text.hpp"
 
 namespace testbench {
 namespace {
@@ -23,7 +26,7 @@ std::string gnuplot_script(const LogChart& chart, const std::string& terminal, c
   std::ostringstream script;
   script.precision(17);
   script << "set terminal " << terminal << "\nset output " << quoted(output) << "\nset title "
-         << quoted(chart.title) << " noenhanced\nset xlabel " << quoted(chart.x_label)
+         << quoted(printable(chart.title)) << " noenhanced\nset xlabel " << quoted(chart.x_label)
          << " noenhanced\nset ylabel " << quoted(chart.y_label)
          << " noenhanced\nset logscale xy\nset grid\nset key top right noenhanced\n";
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
@@ -40,6 +43,19 @@ std::string gnuplot_script(const LogChart& chart, const std::string& terminal, c
   return script.str();
 }
 
+/// Whether the file ends as its format does. gnuplot ignores failed writes, so a full disk leaves a file that
+/// is cut short.
+bool is_whole(const std::filesystem::path& path, bool is_svg) {
+  // The last chunk of a PNG is empty: its type and checksum (ISO/IEC 15948, "IEND").
+  const std::string_view end = is_svg ? std::string_view("</svg>") : std::string_view("IEND\xae\x42\x60\x82");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  std::string text = bytes.str();
+  if (is_svg) text.erase(text.find_last_not_of(" \r\n") + 1);
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
 }  // namespace
 
 bool can_draw_charts() {
@@ -51,13 +67,15 @@ bool can_draw_charts() {
 }
 
 void write_chart(const std::filesystem::path& path, const LogChart& chart) {
-  const std::string terminal =
-      path.extension() == ".svg" ? "svg size 960,640 background 'white'" : "pngcairo size 960,640";
+  const bool is_svg = path.extension() == ".svg";
+  const std::string terminal = is_svg ? "svg size 960,640 background 'white'" : "pngcairo size 960,640";
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     std::FILE* const gnuplot = popen("gnuplot", "w");
     if (gnuplot == nullptr) throw RunError(path.string() + ": cannot start gnuplot");
     std::fputs(gnuplot_script(chart, terminal, temporary.string()).c_str(), gnuplot);
     if (pclose(gnuplot) != 0) throw RunError(path.string() + ": gnuplot failed");
+    if (!is_whole(temporary, is_svg))
+      throw RunError(path.string() + ": cannot be written: the file is cut short; is the disk full?");
   });
 }
 

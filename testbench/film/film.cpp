@@ -43,9 +43,30 @@ double from_float128(Float128 value, int exponent) {
   return std::ldexp(static_cast<double>(value), exponent);
 }
 
+/// Takes the memory of all pixels at once.
+template <class Element>
+void allocate(std::vector<Element>& elements, std::size_t pixels) {
+  elements.reserve(pixels);
+  model::prefer_huge_pages(elements.data(), elements.capacity() * sizeof(Element));
+  elements.resize(pixels);
+}
+
+template <class Element>
+char* put_bytes(const std::vector<Element>& elements, char* to) {
+  static_assert(std::is_trivially_copyable_v<Element>);
+  std::memcpy(to, elements.data(), elements.size() * sizeof(Element));
+  return to + elements.size() * sizeof(Element);
+}
+
+template <class Element>
+const char* get_bytes(std::vector<Element>& elements, const char* from) {
+  std::memcpy(elements.data(), from, elements.size() * sizeof(Element));
+  return from + elements.size() * sizeof(Element);
+}
+
 }  // namespace
 
-Film::Film(FilmSize size, double scale)
+Film::Film(FilmSize size, double scale, FilmSums sums)
     : size_(size),
       scale_(scale),
       max_radiance_(std::ldexp(scale, kLargestSampleExponent)),
@@ -53,11 +74,12 @@ Film::Film(FilmSize size, double scale)
       square_quantum_exponent_(2 * exponent_of(scale) - kSquareFractionBits),
       sum_units_(std::ldexp(1.0, -sum_quantum_exponent_ - 63)),
       square_units_(std::ldexp(1.0, -square_quantum_exponent_ - 63)) {
-  require_memory(checked_pixels(size) * sizeof(Pixel),
+  const std::size_t pixels = checked_pixels(size);
+  const bool with_variances = sums == FilmSums::means_and_variances;
+  require_memory(pixels * (sizeof(Sums) + (with_variances ? sizeof(Squares) : 0)),
                  "a film of " + std::to_string(size.width) + "x" + std::to_string(size.height) + " pixels");
-  pixels_.reserve(checked_pixels(size));
-  model::prefer_huge_pages(pixels_.data(), pixels_.capacity() * sizeof(Pixel));
-  pixels_.resize(checked_pixels(size));
+  allocate(sums_, pixels);
+  if (with_variances) allocate(squares_, pixels);
 }
 
 /// floor(value * units * 2^63), exact: `units` is a power of two and value * units is below 2^31.
@@ -70,18 +92,19 @@ Film::UInt128 Film::to_fixed_point(double value, double units) {
 }
 
 bool Film::add(int pixel_index, const glm::dvec3& radiance) {
-  Pixel& pixel = pixels_.at(static_cast<std::size_t>(pixel_index));
+  Sums& pixel = sums_.at(static_cast<std::size_t>(pixel_index));
   const auto fits = [this](double value) { return value >= 0.0 && value <= max_radiance_; };  // false for NaN
   if (!(fits(radiance.x) && fits(radiance.y) && fits(radiance.z)) || pixel.samples == kMaxSamples) {
     reject(radiance);
     return false;
   }
-  for (int channel = 0; channel < 3; ++channel) {
-    const double value = radiance[channel];
-    pixel.sum[channel] += to_fixed_point(value, sum_units_);
-    pixel.sum_of_squares[channel] += to_fixed_point(value * value, square_units_);
-  }
+  for (int channel = 0; channel < 3; ++channel)
+    pixel.sum[channel] += to_fixed_point(radiance[channel], sum_units_);
   ++pixel.samples;
+  if (!keeps_variances()) return true;
+  Squares& squares = squares_[static_cast<std::size_t>(pixel_index)];
+  for (int channel = 0; channel < 3; ++channel)
+    squares.sum[channel] += to_fixed_point(radiance[channel] * radiance[channel], square_units_);
   return true;
 }
 
@@ -99,47 +122,48 @@ void Film::reject(const glm::dvec3& radiance) {
 }
 
 void Film::merge(const Film& other) {
-  if (other.size_.width != size_.width || other.size_.height != size_.height || other.scale_ != scale_) {
-    throw std::invalid_argument("only films of the same size and scale can be merged");
+  if (other.size_.width != size_.width || other.size_.height != size_.height || other.scale_ != scale_ ||
+      other.keeps_variances() != keeps_variances()) {
+    throw std::invalid_argument("only films of the same size, scale and sums can be merged");
   }
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    if (pixels_[i].samples + other.pixels_[i].samples > kMaxSamples) {
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    if (sums_[i].samples + other.sums_[i].samples > kMaxSamples) {
       throw std::overflow_error("pixel " + std::to_string(i) + " would hold more than 2^32 samples");
     }
   }
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    for (int channel = 0; channel < 3; ++channel) {
-      pixels_[i].sum[channel] += other.pixels_[i].sum[channel];
-      pixels_[i].sum_of_squares[channel] += other.pixels_[i].sum_of_squares[channel];
-    }
-    pixels_[i].samples += other.pixels_[i].samples;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel) sums_[i].sum[channel] += other.sums_[i].sum[channel];
+    sums_[i].samples += other.sums_[i].samples;
   }
+  for (std::size_t i = 0; i < squares_.size(); ++i)
+    for (int channel = 0; channel < 3; ++channel) squares_[i].sum[channel] += other.squares_[i].sum[channel];
   rejected_.not_finite += other.rejected_.not_finite;
   rejected_.negative += other.rejected_.negative;
   rejected_.too_large += other.rejected_.too_large;
 }
 
 std::string Film::bytes() const {
-  static_assert(std::is_trivially_copyable_v<Pixel> && std::is_trivially_copyable_v<RejectedSamples>);
-  const std::size_t pixel_bytes = pixels_.size() * sizeof(Pixel);
-  std::string result(pixel_bytes + sizeof(rejected_), '\0');
-  std::memcpy(result.data(), pixels_.data(), pixel_bytes);
-  std::memcpy(result.data() + pixel_bytes, &rejected_, sizeof(rejected_));
+  static_assert(std::is_trivially_copyable_v<RejectedSamples>);
+  std::string result(byte_count(), '\0');
+  std::memcpy(put_bytes(squares_, put_bytes(sums_, result.data())), &rejected_, sizeof(rejected_));
   return result;
 }
 
-Film Film::from_bytes(FilmSize size, double scale, const std::string& bytes) {
-  Film film(size, scale);
-  const std::size_t pixel_bytes = film.pixels_.size() * sizeof(Pixel);
-  if (bytes.size() != pixel_bytes + sizeof(film.rejected_))
-    throw std::invalid_argument("these bytes are not a film of that size");
-  std::memcpy(film.pixels_.data(), bytes.data(), pixel_bytes);
-  std::memcpy(&film.rejected_, bytes.data() + pixel_bytes, sizeof(film.rejected_));
+Film Film::from_bytes(FilmSize size, double scale, FilmSums sums, const std::string& bytes) {
+  Film film(size, scale, sums);
+  if (bytes.size() != film.byte_count())
+    throw std::invalid_argument("these bytes are not a film of that size and sums");
+  const char* const behind_pixels = get_bytes(film.squares_, get_bytes(film.sums_, bytes.data()));
+  std::memcpy(&film.rejected_, behind_pixels, sizeof(film.rejected_));
   return film;
 }
 
+std::size_t Film::byte_count() const {
+  return sums_.size() * sizeof(Sums) + squares_.size() * sizeof(Squares) + sizeof(rejected_);
+}
+
 glm::dvec3 Film::mean(int pixel_index) const {
-  const Pixel& pixel = at(pixel_index);
+  const Sums& pixel = at(pixel_index);
   if (pixel.samples == 0) return glm::dvec3(0.0);
   glm::dvec3 result;
   for (int channel = 0; channel < 3; ++channel) {
@@ -151,16 +175,18 @@ glm::dvec3 Film::mean(int pixel_index) const {
 }
 
 glm::dvec3 Film::variance_of_mean(int pixel_index) const {
-  const Pixel& pixel = at(pixel_index);
+  const Sums& pixel = at(pixel_index);
   if (pixel.samples < 2) return glm::dvec3(0.0);
+  if (!keeps_variances()) throw std::logic_error("this film keeps no variances");
   const auto samples = static_cast<Float128>(pixel.samples);
   // Shifts the squared sum to the unit of the sum of squares.
   const int shift = 2 * sum_quantum_exponent_ - square_quantum_exponent_;
   const auto sum_to_square_quanta = static_cast<Float128>(std::ldexp(1.0, shift));
+  const Squares& squares_of_pixel = squares_[static_cast<std::size_t>(pixel_index)];
   glm::dvec3 result;
   for (int channel = 0; channel < 3; ++channel) {
     const auto sum = static_cast<Float128>(pixel.sum[channel]);
-    const auto squares = static_cast<Float128>(pixel.sum_of_squares[channel]);
+    const auto squares = static_cast<Float128>(squares_of_pixel.sum[channel]);
     const Float128 deviation = squares - sum * sum * sum_to_square_quanta / samples;
     const Float128 variance = deviation / (samples - 1) / samples;
     result[channel] = std::max(
@@ -175,7 +201,7 @@ std::uint64_t Film::rejected_samples() const {
 
 std::vector<double> Film::rgb() const {
   std::vector<double> result;
-  result.reserve(3 * pixels_.size());
+  result.reserve(3 * sums_.size());
   for (int pixel = 0; pixel < pixel_count(); ++pixel) {
     const glm::dvec3 value = mean(pixel);
     result.insert(result.end(), {value.x, value.y, value.z});

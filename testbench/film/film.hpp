@@ -18,6 +18,12 @@ struct RejectedSamples {
       0;  ///< a channel above Film::max_radiance(), or a pixel already holds Film::kMaxSamples
 };
 
+/// What a film keeps of each pixel's samples besides their number.
+enum class FilmSums : std::uint8_t {
+  means,                ///< 56 bytes a pixel
+  means_and_variances,  ///< 104 bytes a pixel
+};
+
 /// Sums radiance samples in exact integer arithmetic, so the result depends neither on their order nor on how
 /// they were distributed over films that are merged later. Pixels are numbered row by row from the top left.
 ///
@@ -29,8 +35,8 @@ class Film {
   static constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 32;
 
   /// `scale` is a power of two near the scene's largest emission, 2^-40 .. 2^40 (see film_scale()).
-  /// Throws std::invalid_argument for any other scale or an empty size.
-  Film(FilmSize size, double scale);
+  /// Throws std::invalid_argument for any other scale or an empty size, RunError if there is no memory.
+  Film(FilmSize size, double scale, FilmSums sums = FilmSums::means_and_variances);
 
   /// Adds a sample of linear RGB radiance. Returns false, and counts the sample in rejected() instead, if a
   /// channel is not finite, negative or above max_radiance(). `pixel` must be in [0, pixel_count())
@@ -41,19 +47,18 @@ class Film {
   /// of pixels, so callers announce samples in advance. With prefetch(), both functions take 4 % of a render;
   /// without it, add() alone takes 6.5 %.
   void prefetch(int pixel) const {
-    const char* const address = reinterpret_cast<const char*>(pixels_.data() + pixel);
-    __builtin_prefetch(address, 1);
-    __builtin_prefetch(address + sizeof(Pixel) - 1, 1);
+    prefetch(sums_.data() + pixel);
+    if (keeps_variances()) prefetch(squares_.data() + pixel);
   }
 
-  /// Adds all samples of a film of the same size and scale (else std::invalid_argument). Throws
+  /// Adds all samples of a film of the same size, scale and sums (else std::invalid_argument). Throws
   /// std::overflow_error, with this film unchanged, if a pixel would hold more than kMaxSamples.
   void merge(const Film& other);
 
   /// All samples as bytes that from_bytes() of the same build reads, to send a film to another process.
   std::string bytes() const;
   /// Throws std::invalid_argument when `bytes` are not those of a film of this size.
-  static Film from_bytes(FilmSize size, double scale, const std::string& bytes);
+  static Film from_bytes(FilmSize size, double scale, FilmSums sums, const std::string& bytes);
 
   FilmSize size() const { return size_; }
   int pixel_count() const { return size_.width * size_.height; }
@@ -63,7 +68,9 @@ class Film {
   std::uint64_t sample_count(int pixel) const { return at(pixel).samples; }
   /// Mean radiance; 0 for a pixel without samples.
   glm::dvec3 mean(int pixel) const;
+  bool keeps_variances() const { return !squares_.empty(); }
   /// Unbiased estimate of the variance of mean(): sample variance / samples. 0 with fewer than two samples.
+  /// Throws std::logic_error if there are more and the film keeps no variances.
   glm::dvec3 variance_of_mean(int pixel) const;
 
   const RejectedSamples& rejected() const { return rejected_; }
@@ -78,25 +85,36 @@ class Film {
   // ISO C++17 has no 128-bit integer; __extension__ keeps -Wpedantic quiet about the compiler's own.
   __extension__ typedef unsigned __int128 UInt128;  // NOLINT(modernize-use-using)
 
-  // On 8 bytes instead of 16, so that no pixel holds padding: a film of 16384x16384 takes 26 GiB, not 28.
-  struct __attribute__((packed, aligned(8))) Pixel {
+  // On 8 bytes instead of 16, so that no pixel holds padding.
+  struct __attribute__((packed, aligned(8))) Sums {
     UInt128 sum[3] = {0, 0, 0};
-    UInt128 sum_of_squares[3] = {0, 0, 0};
     std::uint64_t samples = 0;
   };
+  /// Sums of squares, apart from the sums: films that keep no variances have none.
+  struct __attribute__((packed, aligned(8))) Squares {
+    UInt128 sum[3] = {0, 0, 0};
+  };
 
+  template <class Element>
+  static void prefetch(const Element* element) {
+    const char* const address = reinterpret_cast<const char*>(element);
+    __builtin_prefetch(address, 1);
+    __builtin_prefetch(address + sizeof(Element) - 1, 1);
+  }
   static UInt128 to_fixed_point(double value, double units);
-  const Pixel& at(int pixel) const { return pixels_.at(static_cast<std::size_t>(pixel)); }
+  const Sums& at(int pixel) const { return sums_.at(static_cast<std::size_t>(pixel)); }
   void reject(const glm::dvec3& radiance);
+  std::size_t byte_count() const;  ///< of bytes()
 
   FilmSize size_;
   double scale_;
   double max_radiance_;
-  int sum_quantum_exponent_;     ///< the unit of Pixel::sum is 2^this
-  int square_quantum_exponent_;  ///< the unit of Pixel::sum_of_squares is 2^this
-  double sum_units_;             ///< 2^-63 / (unit of Pixel::sum)
-  double square_units_;          ///< 2^-63 / (unit of Pixel::sum_of_squares)
-  std::vector<Pixel> pixels_;
+  int sum_quantum_exponent_;     ///< the unit of Sums::sum is 2^this
+  int square_quantum_exponent_;  ///< the unit of Squares::sum is 2^this
+  double sum_units_;             ///< 2^-63 / (unit of Sums::sum)
+  double square_units_;          ///< 2^-63 / (unit of Squares::sum)
+  std::vector<Sums> sums_;
+  std::vector<Squares> squares_;  ///< empty if no variances are kept
   RejectedSamples rejected_;
 };
 

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "testbench/files/atomic_file.hpp"
+#include "testbench/files/checked_file.hpp"
 #include "testbench/film/film_size.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/texture/exr_file.hpp"
@@ -84,26 +85,49 @@ Imf::FrameBuffer one_row(ExrPixel* first) {
   return buffer;
 }
 
-std::string encode_exr(const Film& film, const Imf::Header& header) {
-  Imf::StdOSStream stream;
-  {
-    // OutputFile's destructor writes the line table and hides errors, so it writes to memory; the whole file
-    // is written afterwards, with checks.
-    Imf::OutputFile file(stream, header);
-    for (int row = 0; row < film.size().height; ++row) {
-      std::vector<ExrPixel> pixels = exr_pixels(film, row);
-      file.setFrameBuffer(one_row(pixels.data()));
-      file.writePixels(1);
-    }
+/// OpenEXR writes through it. OutputFile's destructor writes the line table and hides errors, so that the
+/// file keeps them.
+class ExrStream : public Imf::OStream {
+ public:
+  ExrStream(CheckedFile& file, const std::filesystem::path& target)
+      : Imf::OStream(target.c_str()), file_(file) {}
+
+  void write(const char bytes[], int count) override {
+    if (!file_.write(bytes, std::size_t(count))) throw std::runtime_error("the file cannot be written");
   }
-  return stream.str();
+  std::uint64_t tellp() override { return file_.place(); }
+  void seekp(std::uint64_t place) override { file_.seek(place); }
+
+ private:
+  CheckedFile& file_;
+};
+
+/// Row by row: of a large film a copy takes more memory than the machine may have.
+void write_rows(const Film& film, const Imf::Header& header, ExrStream& stream) {
+  Imf::OutputFile file(stream, header);
+  for (int row = 0; row < film.size().height; ++row) {
+    std::vector<ExrPixel> pixels = exr_pixels(film, row);
+    file.setFrameBuffer(one_row(pixels.data()));
+    file.writePixels(1);
+  }
 }
 
 }  // namespace
 
 void write_exr(const std::filesystem::path& path, const Film& film,
                const std::map<std::string, std::string>& attributes) {
-  write_bytes_atomically(path, encode_exr(film, exr_header(film, attributes)));
+  const Imf::Header header = exr_header(film, attributes);
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    CheckedFile file(temporary, path);
+    ExrStream stream(file, path);
+    try {
+      write_rows(film, header, stream);
+    } catch (const std::exception&) {
+      file.finish();  // says why, if it is the file
+      throw;
+    }
+    file.finish();
+  });
 }
 
 int srgb_code(double linear) {
@@ -127,15 +151,13 @@ void write_png(const std::filesystem::path& path, const Film& film) {
   image.width = static_cast<png_uint_32>(film.size().width);
   image.height = static_cast<png_uint_32>(film.size().height);
   image.format = PNG_FORMAT_RGB;
-  const auto encode = [&](void* memory, png_alloc_size_t& bytes) {
-    if (png_image_write_to_memory(&image, memory, &bytes, 0, codes.data(), 0, nullptr) == 0) {
-      throw RunError(path.string() + ": libpng could not encode it: " + image.message);
-    }
-  };
-  png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::string file(bytes, '\0');
-  encode(file.data(), bytes);
-  write_bytes_atomically(path, std::string_view(file).substr(0, bytes));
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    CheckedFile file(temporary, path);
+    const bool is_written = file.stream() != nullptr &&
+                            png_image_write_to_stdio(&image, file.stream(), 0, codes.data(), 0, nullptr) != 0;
+    file.finish();
+    if (!is_written) throw RunError(path.string() + ": libpng could not encode it: " + image.message);
+  });
 }
 
 RadianceImage read_exr_rgb(const std::filesystem::path& path) {

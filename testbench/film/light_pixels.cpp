@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "testbench/mono_image/faces.hpp"
-#include "testbench/mono_image/mono_image.hpp"
+#include "testbench/scene/normalise.hpp"
 
 namespace testbench {
 namespace {
@@ -19,6 +19,13 @@ glm::dvec3 to_camera(const Camera& camera, const glm::dvec3& point) {
           glm::dot(from, camera.direction)};
 }
 
+/// Whether the camera is on the side of the triangle that emits.
+bool faces_camera(const Triangle& triangle, const Camera& camera) {
+  const glm::dvec3 to_camera =
+      camera.orthographic_height ? -camera.direction : camera.position - triangle.vertex[0];
+  return glm::dot(area_normal(triangle), to_camera) > 0;
+}
+
 /// Projects the part of a triangle in front of the camera (clipped after Sutherland and Hodgman 1974).
 FilmPolygon project(const Triangle& triangle, const Camera& camera, const FilmSize& film) {
   glm::dvec3 corner[3];
@@ -27,13 +34,17 @@ FilmPolygon project(const Triangle& triangle, const Camera& camera, const FilmSi
     corner[i] = to_camera(camera, triangle.vertex[i]);
     farthest = std::max(farthest, corner[i].z);
   }
-  const double near = farthest * 1e-6;
-  if (!(near > 0)) return {};
-  const double pixels_per_unit = film.height / (2 * std::tan(0.5 * camera.vertical_field_of_view_radians));
+  if (!(farthest > 0)) return {};
+  const bool is_orthographic = camera.orthographic_height.has_value();
+  const double near = is_orthographic ? 0.0 : farthest * 1e-6;
+  const double film_height =
+      camera.orthographic_height.value_or(2 * std::tan(0.5 * camera.vertical_field_of_view_radians));
+  const double pixels_per_unit = film.height / film_height;
   FilmPolygon polygon;
   const auto add = [&](const glm::dvec3& p) {
-    polygon.emplace_back(0.5 * film.width + p.x / p.z * pixels_per_unit,
-                         0.5 * film.height + p.y / p.z * pixels_per_unit);
+    const double depth = is_orthographic ? 1.0 : p.z;
+    polygon.emplace_back(0.5 * film.width + p.x / depth * pixels_per_unit,
+                         0.5 * film.height + p.y / depth * pixels_per_unit);
   };
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3& a = corner[i];
@@ -84,12 +95,13 @@ void mark(const FilmPolygon& polygon, const FilmSize& film, std::vector<bool>& m
 
 }  // namespace
 
-std::vector<bool> light_pixels(const Scene& scene) {
+std::vector<bool> light_pixels(const Scene& any_unit) {
+  const Scene scene = normalised(any_unit);
   std::vector<bool> marked(std::size_t(scene.film.width) * std::size_t(scene.film.height));
   for (const Triangle& triangle : scene.triangles) {
     const Material& material = scene.materials[std::size_t(triangle.material)];
     if (material.emission == glm::dvec3(0.0)) continue;
-    if (glm::dot(area_normal(triangle), scene.camera.position - triangle.vertex[0]) <= 0) continue;
+    if (!faces_camera(triangle, scene.camera)) continue;
     mark(project(triangle, scene.camera, scene.film), scene.film, marked);
   }
   return marked;

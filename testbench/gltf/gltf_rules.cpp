@@ -117,11 +117,16 @@ constexpr GltfRule kGltfRules[] = {
 
     {"camera", "type", required, text_of("perspective orthographic")},
     {"camera", "perspective", optional, object("camera.perspective")},
+    {"camera", "orthographic", optional, object("camera.orthographic")},
     {"camera", "name", optional, text()},
     {"camera.perspective", "aspectRatio", optional, positive()},
     {"camera.perspective", "yfov", required, positive()},
     {"camera.perspective", "zfar", optional, positive()},
     {"camera.perspective", "znear", required, positive()},
+    {"camera.orthographic", "xmag", required, positive()},
+    {"camera.orthographic", "ymag", required, positive()},
+    {"camera.orthographic", "zfar", required, positive()},
+    {"camera.orthographic", "znear", required, number(0)},
 
     {"material", "name", optional, text()},
     {"material", "extensions", optional, object("material.extensions")},

@@ -10,9 +10,11 @@
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/scene/scene_file.hpp"
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/message_text.hpp"
 #include "testbench/system/processes.hpp"
 
 namespace testbench {
@@ -167,17 +169,22 @@ std::vector<std::pair<std::string, const FlatStatistics*>> runs_of(const GoldenT
 
 }  // namespace
 
-GoldenTables run_golden(const GoldenGrid& grid, int jobs, const std::function<void(double)>& progress) {
-  std::map<std::string, Scene> scenes;
+GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed) {
+  GoldenScenes scenes;
   for (const GoldenRun& run : grid.runs)
     if (scenes.count(run.scene) == 0) {
-      Scene scene = load_scene(run.scene);
+      Scene scene = load_scene(run.scene, is_outside_allowed);
       scene.film = grid.film;
       scenes.emplace(run.scene, std::move(scene));
     }
+  return scenes;
+}
+
+GoldenTables run_golden(const GoldenGrid& grid, const GoldenScenes& scenes, int jobs,
+                        const std::function<void(double)>& progress) {
   std::vector<std::function<std::string()>> work;
   for (const GoldenRun& run : grid.runs)
-    work.emplace_back([&] { return Json(kept_of(run, scenes.at(run.scene))).dump(); });
+    work.emplace_back([&] { return json_text(kept_of(run, scenes.at(run.scene))); });
   const std::vector<std::string> results = run_in_processes(work, jobs, [&](int finished) {
     if (progress) progress(finished / double(work.size()));
   });
@@ -195,7 +202,9 @@ GoldenTables read_golden(const fs::path& directory) {
 }
 
 void write_golden(const fs::path& directory, const GoldenTables& tables) {
-  for (const auto& [file, table] : tables) write_bytes_atomically(directory / file, table_csv(table));
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (const auto& [file, table] : tables) files.emplace_back(directory / file, table_csv(table));
+  write_together(files);
   for (const auto& [file, table] : read_golden(directory))
     if (tables.count(file) == 0) fs::remove(directory / file);
 }
@@ -219,7 +228,7 @@ std::string golden_moves(const GoldenTables& kept, const GoldenTables& found) {
     }
     before.erase(old);
   }
-  for (const auto& [run, values] : before) text += "  run gone: " + run + '\n';
+  for (const auto& [run, values] : before) text += "  run gone: " + shortened(printable(run)) + '\n';
   for (const std::string& key : order) text += move_line(key, moves[key], after.size());
   return text;
 }

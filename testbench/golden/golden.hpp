@@ -17,6 +17,7 @@ struct GoldenRun {
   std::string file;   ///< of the runs of one scene and chip: "cornell_box-csx600.csv"
   std::string name;   ///< its column: "full n1 both lt"
   std::string scene;  ///< path of its directory
+  std::string chip;   ///< preset, or path of its file
   RenderOptions options;
   GivenOptions given;  ///< options of the firmware that are not chosen as `csx600 render` does
 };
@@ -28,7 +29,7 @@ struct GoldenRun {
 ///     samples = 2              a pixel
 ///     [[grid]]                 all combinations of lists, by any key of a sweep (run_settings.hpp)
 ///     scene = ["../../scenes/cornell_box"]    relative to grid.toml
-///     chip = ["csx600"]                       presets
+///     chip = ["csx600"]                       presets, or .toml files relative to grid.toml
 ///     firmware.program = ["segments", "direct", "full"]
 ///     firmware.n = [0, 1]
 ///     timing = ["lt"]
@@ -47,12 +48,18 @@ GoldenGrid read_golden_grid(const std::filesystem::path& directory);
 using GoldenTable = std::vector<std::pair<std::string, FlatStatistics>>;
 using GoldenTables = std::map<std::string, GoldenTable>;
 
+/// The scenes of all runs by path, with the grid's film. Throws InputError.
+/// @param is_outside_allowed see load_scene()
+using GoldenScenes = std::map<std::string, Scene>;
+GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed = false);
+
 /// Runs them, each in a process of its own.
-GoldenTables run_golden(const GoldenGrid& grid, int jobs, const std::function<void(double)>& progress = {});
+GoldenTables run_golden(const GoldenGrid& grid, const GoldenScenes& scenes, int jobs,
+                        const std::function<void(double)>& progress = {});
 
 /// The .csv files of the directory. Throws InputError for one that is not a table.
 GoldenTables read_golden(const std::filesystem::path& directory);
-/// Writes the tables and removes .csv files of others. One row a counter, one column a run.
+/// Writes the tables, all or none, and removes .csv files of others. One row a counter, one column a run.
 void write_golden(const std::filesystem::path& directory, const GoldenTables& tables);
 
 /// What moved from `kept` to `found`: by counter, in how many runs and how far. "" when no counter did.

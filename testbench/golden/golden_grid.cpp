@@ -44,7 +44,8 @@ class GridReader {
     try {
       table = toml::parse(text, file_);
     } catch (const toml::parse_error& error) {
-      throw InputError(file_ + ": cannot be read as TOML: " + std::string(error.description()));
+      throw InputError(file_ + ":" + std::to_string(error.source().begin.line) +
+                       ": cannot be read as TOML: " + std::string(error.description()));
     }
     for (const auto& [key, node] : table)
       if (static const std::set<std::string_view> known = {"width", "height", "samples", "grid"};
@@ -58,7 +59,8 @@ class GridReader {
     if (grids == nullptr || !grids->is_array_of_tables())
       refuse(file_, "grid", "none", "one [[grid]] or more");
     for (const toml::node& node : *grids)
-      for (const Settings& settings : product(*node.as_table())) add(make_run(settings), grid);
+      for (const Settings& settings : product(*node.as_table()))
+        add(make_run(settings, line_of(file_, node)), grid);
     return grid;
   }
 
@@ -70,10 +72,12 @@ class GridReader {
 
   int positive(const toml::table& table, const char* key) const {
     constexpr std::int64_t kMost = 10000;
-    const auto value = table[key].value_exact<std::int64_t>();
+    const std::string allowed = "an integer from 1 to " + std::to_string(kMost);
+    const toml::node* const node = table.get(key);
+    if (node == nullptr) refuse(file_, key, "none", allowed);
+    const auto value = node->value_exact<std::int64_t>();
     if (!value || *value < 1 || *value > kMost)
-      refuse(file_, key, value ? std::to_string(*value) : "none",
-             "an integer from 1 to " + std::to_string(kMost));
+      refuse(line_of(file_, *node), key, found_text(*node), allowed);
     return int(*value);
   }
 
@@ -123,25 +127,34 @@ class GridReader {
     return runs;
   }
 
-  /// Adds a run once: products may overlap.
-  static void add(GoldenRun&& run, GoldenGrid& grid) {
-    for (const GoldenRun& known : grid.runs)
-      if (known.file == run.file && known.name == run.name) return;
+  /// Adds a run once: products may overlap. A table goes by the names of scene and chip, without their
+  /// folders.
+  void add(GoldenRun&& run, GoldenGrid& grid) const {
+    for (const GoldenRun& known : grid.runs) {
+      if (known.file != run.file || known.name != run.name) continue;
+      if (known.scene == run.scene && known.chip == run.chip) return;
+      const bool is_scene = known.scene != run.scene;
+      refuse(file_, is_scene ? "scene" : "chip",
+             is_scene ? known.scene + " and " + run.scene : known.chip + " and " + run.chip,
+             "files of different names");
+    }
     grid.runs.push_back(std::move(run));
   }
 
-  RunSettings with_origin(const Settings& settings) const {
+  /// @param origin of the [[grid]], for values that do not fit each other
+  static RunSettings with_origin(const Settings& settings, const std::string& origin) {
     try {
       return make_settings(settings);
-    } catch (const InputError& error) {  // values that do not fit each other
-      throw InputError(file_ + ": " + error.what());
+    } catch (const InputError& error) {
+      throw InputError(origin + ": " + error.what());
     }
   }
 
-  GoldenRun make_run(const Settings& settings) const {
-    const RunSettings made = with_origin(settings);
+  GoldenRun make_run(const Settings& settings, const std::string& origin) const {
+    const RunSettings made = with_origin(settings, origin);
     GoldenRun run;
     run.scene = made.scene;
+    run.chip = made.chip;
     run.options = made.options;
     run.options.work.samples = samples_;
     // A golden run says how rays find triangles: what suits them best may change, its counters must not.

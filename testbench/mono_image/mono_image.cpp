@@ -13,6 +13,8 @@
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/scene_features.hpp"
+#include "testbench/scene/film_ray.hpp"
+#include "testbench/scene/normalise.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -29,14 +31,13 @@ cn::vec3<double> to_record(const glm::dvec3& v) {
 }
 
 CameraRecord camera_record(const Camera& camera, const FilmSize& film) {
-  const glm::dvec3 right = glm::cross(camera.direction, camera.up);
-  const double pixel_size = 2.0 * std::tan(0.5 * camera.vertical_field_of_view_radians) / film.height;
+  const FilmPlane plane = film_plane(camera, film);
   CameraRecord record;
-  record.position = to_record(camera.position);
-  record.right = to_record(right * pixel_size);
-  record.down = to_record(-camera.up * pixel_size);
-  record.corner = to_record(camera.direction - right * (0.5 * film.width * pixel_size) +
-                            camera.up * (0.5 * film.height * pixel_size));
+  record.is_orthographic = camera.orthographic_height.has_value();
+  record.position = to_record(record.is_orthographic ? plane.corner : camera.position);
+  record.direction = to_record(record.is_orthographic ? camera.direction : plane.corner);
+  record.right = to_record(plane.right);
+  record.down = to_record(plane.down);
   record.width = film.width;
   record.height = film.height;
   return record;
@@ -59,7 +60,8 @@ Box padded_box(const Triangle& triangle, double reach) {
 /// A bound for the distance between any two points of camera and triangles, where all rays start.
 double reach_of(const Scene& scene) {
   Box all;
-  all.include(scene.camera.position);
+  for (const int x : {0, scene.film.width})
+    for (const int y : {0, scene.film.height}) all.include(film_ray(scene, x, y).origin);
   for (const Triangle& triangle : scene.triangles) all.include(bounds_of(triangle));
   constexpr double kRoom = 1.125;  // for paddings and rounding
   return kRoom * glm::length(all.upper - all.lower);
@@ -336,6 +338,10 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   if (config.uses_tree())
     std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
   return image;
+}
+
+MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config) {
+  return make_mono_image(normalised(scene), num_pes, config);
 }
 
 }  // namespace testbench

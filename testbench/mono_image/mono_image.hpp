@@ -14,7 +14,12 @@ struct MonoImage {
   std::vector<std::uint8_t> bytes;  ///< layout.scene_bytes bytes
 };
 
-/// Lays out a scene for the firmware. Throws InputError for a scene without light.
+/// Lays out a scene for the firmware, lengths in the scene's unit. Throws InputError for a scene without
+/// light.
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config);
+
+/// The same with lengths in the scene's normal unit (testbench/scene/normalise.hpp), so that scenes of any
+/// size are rendered alike. Every render uses this one.
+MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config);
 
 }  // namespace testbench

@@ -124,13 +124,14 @@ std::string report_page(const std::string& run_or_sweep, const std::string& imag
   Json data = {{"title", title}, {is_sweep ? "sweep" : "run", json}};
   if (!image.empty()) data["image"] = image_address(image);
   namespace assets = report_assets;
-  return fill(assets::page_html(), {{"TITLE", for_html(title)},
-                                    {"STYLE", assets::page_css()},
-                                    {"DATA", for_script(data.dump(-1, ' ', true))},
-                                    {"LIBRARY", assets::echarts_js()},
-                                    {"COMMON", assets::common_js()},
-                                    {"RUN", assets::run_js()},
-                                    {"SWEEP", assets::sweep_js()}});
+  return fill(assets::page_html(),
+              {{"TITLE", for_html(title)},
+               {"STYLE", assets::page_css()},
+               {"DATA", for_script(data.dump(-1, ' ', true, Json::error_handler_t::replace))},
+               {"LIBRARY", assets::echarts_js()},
+               {"COMMON", assets::common_js()},
+               {"RUN", assets::run_js()},
+               {"SWEEP", assets::sweep_js()}});
 }
 
 }  // namespace testbench

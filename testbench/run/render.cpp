@@ -63,7 +63,7 @@ class Run {
       : options_(options),
         image_(checked_image(scene, options)),
         relay_(scene, options.work, progress),
-        result_(Film(scene.film, film_scale(scene))) {}
+        result_(Film(scene.film, film_scale(scene), options.film_sums)) {}
 
   const MonoImage& image() const { return image_; }
   RenderResult& result() { return result_; }
@@ -111,7 +111,7 @@ class Run {
   static MonoImage checked_image(const Scene& scene, const RenderOptions& options) {
     path_tracer::validate(options.program);
     require_memory_for_triangles(scene, options);
-    MonoImage image = make_mono_image(scene, options.chip.chip.pes, options.program);
+    MonoImage image = make_normal_mono_image(scene, options.chip.chip.pes, options.program);
     require_mono_memory(image, options.chip);
     return image;
   }

@@ -27,6 +27,7 @@ struct RenderOptions {
   path_tracer::Work work;
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
   cn::Level level = cn::widest_level();
+  FilmSums film_sums = FilmSums::means_and_variances;
   ObservationOptions observation;  ///< on the chip only
   bool check_hazards = false;  ///< with kernels that report their accesses (model/hazards/hazard_checker.hpp)
 };

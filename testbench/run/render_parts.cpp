@@ -27,10 +27,10 @@ std::string encode(const RenderResult& result) {
   return bytes + result.film.bytes();
 }
 
-PartialRender decode(const Scene& scene, const std::string& bytes) {
+PartialRender decode(const Scene& scene, FilmSums sums, const std::string& bytes) {
   PartHeader header;
   std::memcpy(&header, bytes.data(), sizeof(header));
-  PartialRender part{Film::from_bytes(scene.film, film_scale(scene), bytes.substr(sizeof(header))),
+  PartialRender part{Film::from_bytes(scene.film, film_scale(scene), sums, bytes.substr(sizeof(header))),
                      header.segments,
                      header.cpu_seconds,
                      {}};
@@ -53,7 +53,7 @@ std::vector<PartialRender> render_parts(const Scene& scene, const RenderOptions&
   }
   std::vector<PartialRender> results;
   for (const std::string& bytes : run_in_processes(jobs, static_cast<int>(jobs.size())))
-    results.push_back(decode(scene, bytes));
+    results.push_back(decode(scene, options.film_sums, bytes));
   return results;
 }
 

@@ -173,6 +173,7 @@ RunSettings make_settings(const std::vector<Setting>& settings) {
   for (const Setting& setting : settings)
     if (find_run_parameter(setting.key) == nullptr) write_chip(run.options.chip, setting);
   run.options.level = widest_level();
+  run.options.film_sums = FilmSums::means;  // a sweep and golden runs keep the image's hash only
   try {
     model::validate(run.options.chip);
     path_tracer::validate(run.options.program);

@@ -31,14 +31,15 @@ class Collector {
     materials_.push_back(std::move(standard));
   }
 
-  void collect() {
+  /// @param camera_name of the camera to take; see find_gltf_camera()
+  void collect(const std::optional<std::string>& camera_name) {
     for (const std::size_t node : nodes_.in_scene) {
       const nlohmann::json& source = document_.element("nodes", node);
       if (source.contains("mesh")) add_mesh(node, source);
-      if (source.contains("camera") && !result_.camera)
-        result_.camera = read_gltf_camera(document_, node, nodes_.transforms[node]);
       if (find_gltf(source, "extensions", "KHR_lights_punctual") != nullptr) add_light(node);
     }
+    if (const auto node = find_gltf_camera(document_, nodes_, camera_name))
+      result_.camera = read_gltf_camera(document_, *node, nodes_.transforms[*node]);
     if (!document_.array("animations").empty())
       document_.note("an animation is left out, its nodes stand as the file places them", "",
                      document_.array("animations").size());
@@ -289,7 +290,7 @@ class Collector {
 GltfFile load_gltf(const std::filesystem::path& file, const MeshOptions& options) {
   GltfDocument document(file, options.reach);
   GltfFile result;
-  Collector(document, *options.textures, result).collect();
+  Collector(document, *options.textures, result).collect(options.camera);
   return result;
 }
 

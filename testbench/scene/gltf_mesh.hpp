@@ -15,7 +15,9 @@ struct GltfCamera {
 
 struct GltfFile {
   Mesh mesh;
-  std::optional<GltfCamera> camera;  ///< the first perspective one among the scene's nodes
+  /// The camera that is asked for by name; else the first perspective one among the scene's nodes; else the
+  /// first orthographic one.
+  std::optional<GltfCamera> camera;
 };
 
 /// Reads a glTF 2.0 file, .gltf or .glb: all triangles of the default scene, or of all nodes without a parent
@@ -28,7 +30,8 @@ struct GltfFile {
 /// Throws InputError (one line: file, JSON pointer or part of the file, what was found, what is allowed) for
 /// a file that cannot be read, is cut off or lies out of reach, JSON that breaks a rule of gltf_schema.hpp or
 /// nests too deep, an index or range beyond what it points into, nodes that are no trees, a coordinate that
-/// is not a number of at most kMaxCoordinate, an unknown required extension, or no triangles.
+/// is not a number of at most kMaxCoordinate, an unknown required extension, no triangles, or no
+/// camera of the name that is asked for.
 GltfFile load_gltf(const std::filesystem::path& file, const MeshOptions& options);
 
 }  // namespace testbench

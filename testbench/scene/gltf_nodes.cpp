@@ -114,6 +114,49 @@ GltfNumbers read_instance_attribute(GltfDocument& document, const nlohmann::json
   return read_gltf_accessor(document, attributes[name], form, pointer + "/attributes/" + name);
 }
 
+const nlohmann::json& camera_at(const GltfDocument& document, std::size_t node) {
+  return document.element("cameras", document.element("nodes", node).at("camera").get<std::size_t>());
+}
+
+std::string camera_pointer(const GltfDocument& document, std::size_t node) {
+  return "/cameras/" + std::to_string(document.element("nodes", node).at("camera").get<std::size_t>());
+}
+
+bool is_orthographic(const nlohmann::json& camera) {
+  return camera.value("type", nlohmann::json()) == "orthographic";
+}
+
+bool has_name(const nlohmann::json& object, const std::string& name) {
+  return object.value("name", nlohmann::json()) == name;
+}
+
+/// @param nodes with orthographic cameras
+void note_unused(GltfDocument& document, const std::vector<std::size_t>& nodes) {
+  for (const std::size_t node : nodes)
+    document.note("an orthographic camera is left out (camera of [[mesh]] names the one to use)",
+                  camera_pointer(document, node));
+}
+
+void read_perspective(const GltfDocument& document, const nlohmann::json& lens, const std::string& pointer,
+                      GltfCamera& result) {
+  const double angle = lens["yfov"].get<double>();
+  if (!(angle < glm::pi<double>()))
+    document.fail(pointer + "/perspective/yfov", json_in_message(lens["yfov"]), "0 to pi, both excluded");
+  result.camera.vertical_field_of_view_radians = angle;
+  if (const nlohmann::json* const ratio = find_gltf(lens, "aspectRatio"))
+    result.aspect_ratio = ratio->get<double>();
+}
+
+/// xmag and ymag are half the width and height of the view (glTF 2.0, section 3.10.3).
+void read_orthographic(const GltfDocument& document, const nlohmann::json& lens, const std::string& pointer,
+                       GltfCamera& result) {
+  for (const char* const size : {"xmag", "ymag"})
+    if (!(lens[size].get<double>() <= 0.5 * kMaxCoordinate))
+      document.fail(pointer + "/orthographic/" + size, json_in_message(lens[size]), "at most 5e99");
+  result.camera.orthographic_height = 2.0 * lens["ymag"].get<double>();
+  result.aspect_ratio = lens["xmag"].get<double>() / lens["ymag"].get<double>();
+}
+
 }  // namespace
 
 GltfNodes read_gltf_nodes(GltfDocument& document) {
@@ -169,21 +212,36 @@ std::vector<glm::dmat4> read_gltf_instances(GltfDocument& document, std::size_t 
   return transforms;
 }
 
-std::optional<GltfCamera> read_gltf_camera(GltfDocument& document, std::size_t node,
-                                           const glm::dmat4& transform) {
-  const auto index = document.element("nodes", node).at("camera").get<std::size_t>();
-  const nlohmann::json& source = document.element("cameras", index);
-  const std::string pointer = "/cameras/" + std::to_string(index);
-  if (source.value("type", nlohmann::json()) == "orthographic") {
-    document.note("an orthographic camera is left out", pointer);
-    return std::nullopt;
+std::optional<std::size_t> find_gltf_camera(GltfDocument& document, const GltfNodes& nodes,
+                                            const std::optional<std::string>& name) {
+  std::vector<std::size_t> orthographic;
+  for (const std::size_t node : nodes.in_scene) {
+    const nlohmann::json& source = document.element("nodes", node);
+    if (!source.contains("camera")) continue;
+    const nlohmann::json& camera = camera_at(document, node);
+    if (name) {
+      if (has_name(camera, *name) || has_name(source, *name)) return node;
+    } else if (!is_orthographic(camera)) {
+      note_unused(document, orthographic);
+      return node;
+    } else {
+      orthographic.push_back(node);
+    }
   }
+  if (name) document.fail("/cameras", "no camera '" + *name + "' in the scene", "the name of one");
+  if (orthographic.empty()) return std::nullopt;
+  const std::size_t first = orthographic.front();
+  orthographic.erase(orthographic.begin());
+  note_unused(document, orthographic);
+  return first;
+}
+
+GltfCamera read_gltf_camera(GltfDocument& document, std::size_t node, const glm::dmat4& transform) {
+  const nlohmann::json& source = camera_at(document, node);
+  const std::string pointer = camera_pointer(document, node);
   document.check(source, "camera", pointer);
-  if (!source.contains("perspective")) document.fail(pointer + "/perspective", "none", "an object");
-  const nlohmann::json& lens = source["perspective"];
-  const double angle = lens["yfov"].get<double>();
-  if (!(angle < glm::pi<double>()))
-    document.fail(pointer + "/perspective/yfov", json_in_message(lens["yfov"]), "0 to pi, both excluded");
+  const char* const projection = is_orthographic(source) ? "orthographic" : "perspective";
+  if (!source.contains(projection)) document.fail(pointer + "/" + projection, "none", "an object");
   const glm::dmat3 axes(transform);
   const std::string where = document.named("nodes", "node", node);
   if (!is_finite(transform) || !(std::abs(glm::determinant(axes)) > 0.0))
@@ -197,9 +255,11 @@ std::optional<GltfCamera> read_gltf_camera(GltfDocument& document, std::size_t n
   camera.direction = glm::normalize(-axes[2]);
   const glm::dvec3 side = glm::normalize(glm::cross(camera.direction, axes[1]));
   camera.up = glm::cross(side, camera.direction);
-  camera.vertical_field_of_view_radians = angle;
-  if (const nlohmann::json* const ratio = find_gltf(lens, "aspectRatio"))
-    result.aspect_ratio = ratio->get<double>();
+  const nlohmann::json& lens = source[projection];
+  if (is_orthographic(source))
+    read_orthographic(document, lens, pointer, result);
+  else
+    read_perspective(document, lens, pointer, result);
   return result;
 }
 

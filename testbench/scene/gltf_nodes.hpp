@@ -1,6 +1,8 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "testbench/gltf/gltf_document.hpp"
@@ -22,9 +24,14 @@ GltfNodes read_gltf_nodes(GltfDocument& document);
 /// nothing for a node without the extension.
 std::vector<glm::dmat4> read_gltf_instances(GltfDocument& document, std::size_t node);
 
-/// The camera of a node; std::nullopt for an orthographic one, which is noted. It looks along -z with +y up
-/// (glTF 2.0, section 3.10).
-std::optional<GltfCamera> read_gltf_camera(GltfDocument& document, std::size_t node,
-                                           const glm::dmat4& transform);
+/// The node whose camera is to be used: that of the name, the camera's own or its node's; without a name the
+/// first perspective one, else the first orthographic one, others of which are noted. std::nullopt if there
+/// is none. Throws InputError if there is none of that name.
+std::optional<std::size_t> find_gltf_camera(GltfDocument& document, const GltfNodes& nodes,
+                                            const std::optional<std::string>& name);
+
+/// The camera of a node. It looks along -z with +y up (glTF 2.0, section 3.10). A node's scale changes no
+/// camera's view.
+GltfCamera read_gltf_camera(GltfDocument& document, std::size_t node, const glm::dmat4& transform);
 
 }  // namespace testbench

@@ -27,13 +27,11 @@ struct Mesh {
   std::size_t degenerate_triangles =
       0;        ///< number of triangles dropped because they have no area; see is_degenerate()
   Notes notes;  ///< what the loader left out or replaced
-  bool has_default_material = false;  ///< whether a face has the default material
 
   /// Notes that a face has the default material. @param where the place and why, a function
   template <class Where>
   void note_default_material(const Where& where) {
     static_assert(kDefaultReflectance == 0.8, "the note says 0.8");
-    has_default_material = true;
     notes.add_at("a face has the default material of reflectance 0.8 (material of [[mesh]] sets another)",
                  where);
   }
@@ -46,6 +44,7 @@ inline constexpr double kMaxCoordinate = 1e100;
 struct MeshOptions {
   FileReach reach;                                                            ///< of the files that it names
   std::optional<Material> material;                                           ///< in place of the default one
+  std::optional<std::string> camera = std::nullopt;                           ///< name of the camera to take, or of its node
   std::shared_ptr<TextureStore> textures = std::make_shared<TextureStore>();  ///< where its textures go
   bool must_have_textures = false;  ///< whether a texture of an MTL file that is missing is an error
 };

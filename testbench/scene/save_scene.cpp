@@ -71,14 +71,17 @@ std::string toml_of(const Scene& scene) {
   const auto vector = [](const glm::dvec3& v) { return toml::array{v.x, v.y, v.z}; };
   const Camera& camera = scene.camera;
 
-  const toml::table table{
-      {"camera", toml::table{{"position", vector(camera.position)},
-                             {"direction", vector(camera.direction)},
-                             {"up", vector(camera.up)},
-                             {"vertical_fov_degrees",
-                              camera.vertical_field_of_view_radians * (180.0 / glm::pi<double>())}}},
-      {"film", toml::table{{"width", scene.film.width}, {"height", scene.film.height}}},
-      {"mesh", toml::array{toml::table{{"file", "mesh.obj"}}}}};
+  toml::table camera_table{{"position", vector(camera.position)},
+                           {"direction", vector(camera.direction)},
+                           {"up", vector(camera.up)}};
+  if (camera.orthographic_height)
+    camera_table.insert("orthographic_height", *camera.orthographic_height);
+  else
+    camera_table.insert("vertical_fov_degrees",
+                        camera.vertical_field_of_view_radians * (180.0 / glm::pi<double>()));
+  const toml::table table{{"camera", std::move(camera_table)},
+                          {"film", toml::table{{"width", scene.film.width}, {"height", scene.film.height}}},
+                          {"mesh", toml::array{toml::table{{"file", "mesh.obj"}}}}};
   std::ostringstream text;
   text << table << "\n";
   return text.str();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,14 +21,17 @@ struct Triangle {
   std::int32_t material = 0;  ///< index into Scene::materials
 };
 
-/// A pinhole camera. Pixel x grows along cross(direction, up), to the right of a viewer who looks along
-/// `direction`; pixel y grows along -up. So with direction +z and up +y, larger world x lies further left in
-/// the picture.
+/// A pinhole camera, or an orthographic one, whose rays are parallel. Pixel x grows along cross(direction,
+/// up), to the right of a viewer who looks along `direction`; pixel y grows along -up. So with direction +z
+/// and up +y, larger world x lies further left in the picture.
 struct Camera {
-  glm::dvec3 position{0.0};
-  glm::dvec3 direction{0.0, 0.0, 1.0};  ///< unit length
-  glm::dvec3 up{0.0, 1.0, 0.0};         ///< unit length, orthogonal to direction
-  double vertical_field_of_view_radians = 0.0;
+  glm::dvec3 position{0.0};                     ///< of the pinhole, or of the orthographic film's centre
+  glm::dvec3 direction{0.0, 0.0, 1.0};          ///< unit length
+  glm::dvec3 up{0.0, 1.0, 0.0};                 ///< unit length, orthogonal to direction
+  double vertical_field_of_view_radians = 0.0;  ///< of a pinhole camera
+  /// Height of the film in the scene, which makes the camera orthographic: rays start on the film and run
+  /// along `direction`, and what lies behind the film is not seen.
+  std::optional<double> orthographic_height;
 };
 
 /// Largest width or height of a film, in pixels.

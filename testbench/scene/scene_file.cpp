@@ -11,6 +11,7 @@
 #include "testbench/files/text_lines.hpp"
 #include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
+#include "testbench/scene/normalise.hpp"
 #include "testbench/scene/obj_mesh.hpp"
 #include "testbench/scene/ply_mesh.hpp"
 #include "testbench/scene/repeated_triangles.hpp"
@@ -69,21 +70,32 @@ glm::dvec3 unit(const glm::dvec3& vector) {
   return glm::normalize(vector / largest);
 }
 
-double field_of_view_radians(const TableReader& table) {
-  if (table.has_first_of({"vertical_fov_degrees"}, {"focal_length", "film_height"})) {
-    return glm::radians(table.number_between("vertical_fov_degrees", 0.0, 180.0));
+/// What part of the scene the picture shows: an angle, or a height in parallel rays.
+void read_projection(const TableReader& table, Camera& camera) {
+  switch (
+      table.group_of({{"vertical_fov_degrees"}, {"focal_length", "film_height"}, {"orthographic_height"}})) {
+    case 0:
+      camera.vertical_field_of_view_radians =
+          glm::radians(table.number_between("vertical_fov_degrees", 0.0, 180.0));
+      return;
+    case 1: {
+      const double focal_length = table.number_between("focal_length", 0.0, kLargestDouble);
+      const double film_height = table.number_between("film_height", 0.0, kLargestDouble);
+      camera.vertical_field_of_view_radians = 2.0 * std::atan2(0.5 * film_height, focal_length);
+      return;
+    }
+    default:
+      camera.orthographic_height = table.number_between("orthographic_height", 0.0, kMaxCoordinate);
   }
-  const double focal_length = table.number_between("focal_length", 0.0, kLargestDouble);
-  const double film_height = table.number_between("film_height", 0.0, kLargestDouble);
-  return 2.0 * std::atan2(0.5 * film_height, focal_length);
 }
 
 Camera read_camera(const TableReader& table) {
-  table.require_only(
-      {"position", "look_at", "direction", "up", "vertical_fov_degrees", "focal_length", "film_height"});
+  table.require_only({"position", "look_at", "direction", "up", "vertical_fov_degrees", "focal_length",
+                      "film_height", "orthographic_height"});
   Camera camera;
   camera.position = table.vector("position");
-  const char* const direction_key = table.has_first_of({"look_at"}, {"direction"}) ? "look_at" : "direction";
+  const char* const direction_key =
+      table.group_of({{"look_at"}, {"direction"}}) == 0 ? "look_at" : "direction";
   const glm::dvec3 target = table.vector(direction_key);
   const glm::dvec3 direction = table.has("look_at") ? target - camera.position : target;
   if (direction == glm::dvec3(0.0)) {
@@ -100,7 +112,7 @@ Camera read_camera(const TableReader& table) {
                   "a vector that is at least 1e-6 radians off it");
   }
   camera.up = glm::normalize(glm::cross(side, camera.direction));
-  camera.vertical_field_of_view_radians = field_of_view_radians(table);
+  read_projection(table, camera);
   return camera;
 }
 
@@ -132,7 +144,9 @@ std::optional<Material> read_material(const TableReader& mesh, const TextureFile
 Camera moved(Camera camera, const glm::dmat4& transform) {
   camera.position = glm::dvec3(transform * glm::dvec4(camera.position, 1.0));
   camera.direction = glm::normalize(glm::dmat3(transform) * camera.direction);
-  camera.up = glm::normalize(glm::dmat3(transform) * camera.up);
+  const glm::dvec3 up = glm::dmat3(transform) * camera.up;
+  camera.up = glm::normalize(up);
+  if (camera.orthographic_height) *camera.orthographic_height *= glm::length(up);
   return camera;
 }
 
@@ -145,18 +159,26 @@ TriangleAttributes moved(TriangleAttributes attributes, const glm::dmat4& transf
   return attributes;
 }
 
+/// The name of the camera that the scene wants of a mesh file.
+std::optional<std::string> read_camera_name(const TableReader& mesh) {
+  if (!mesh.has("camera")) return std::nullopt;
+  if (!is_gltf(mesh.text("file")))
+    mesh.fail_at("camera", "a camera of a file without cameras", "one of a glTF file, by its name");
+  return mesh.text("camera");
+}
+
 /// Adds the mesh file that `table` names.
 /// @param camera set to the file's camera if it has one and `camera` is empty
-/// Returns whether the mesh has faces of the default material.
-bool add_mesh(const TableReader& table, const std::filesystem::path& directory, const FileReach& reach,
+void add_mesh(const TableReader& table, const std::filesystem::path& directory, const FileReach& reach,
               const std::shared_ptr<TextureStore>& textures, Scene& scene, std::optional<Camera>& camera) {
-  table.require_only({"file", "scale", "rotate_degrees", "translate", "material"});
+  table.require_only({"file", "scale", "rotate_degrees", "translate", "material", "camera"});
   const bool is_moved = table.has("scale") || table.has("rotate_degrees") || table.has("translate");
   const glm::dmat4 transform = read_transform(table);
   const std::filesystem::path mesh_file = directory / table.text("file");
   reach.require(mesh_file, table.where_is("file") + ": mesh.file");
   const GltfFile file =
-      load_mesh_file(mesh_file, {reach, read_material(table, {directory, reach, *textures}), textures, true});
+      load_mesh_file(mesh_file, {reach, read_material(table, {directory, reach, *textures}),
+                                 read_camera_name(table), textures, true});
   if (file.camera && !camera) camera = moved(file.camera->camera, transform);
   const Mesh& mesh = file.mesh;
   const auto first_material = static_cast<std::int32_t>(scene.materials.size());
@@ -184,7 +206,6 @@ bool add_mesh(const TableReader& table, const std::filesystem::path& directory, 
                             moved(corner_attributes_of(mesh.corners, i), transform));
     scene.triangles.push_back(triangle);
   }
-  return mesh.has_default_material;
 }
 
 TableReader subtable(const toml::table& root, const std::string& file, const char* name) {
@@ -202,14 +223,9 @@ FilmSize read_film(const toml::table& root, const std::string& file) {
   return {film.pixels("width"), film.pixels("height")};
 }
 
-/// What the mesh files of a scene.toml bring along besides triangles.
-struct OfMeshes {
-  std::optional<Camera> camera;
-  bool has_default_material = false;
-};
-
-OfMeshes add_meshes(const toml::table& root, const std::filesystem::path& file, bool is_outside_allowed,
-                    Scene& scene) {
+/// Adds all mesh files of a scene.toml. Returns the first camera that one of them holds.
+std::optional<Camera> add_meshes(const toml::table& root, const std::filesystem::path& file,
+                                 bool is_outside_allowed, Scene& scene) {
   const toml::array* meshes = root.get_as<toml::array>("mesh");
   if (meshes == nullptr || meshes->empty() || !meshes->is_array_of_tables()) {
     fail_at_key(file.string(), "mesh", root.contains("mesh") ? "no array of tables" : "none",
@@ -217,29 +233,32 @@ OfMeshes add_meshes(const toml::table& root, const std::filesystem::path& file, 
   }
   const FileReach reach(file.parent_path(), is_outside_allowed);
   const auto textures = std::make_shared<TextureStore>();
-  OfMeshes result;
-  for (const toml::node& node : *meshes) {
-    if (add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), reach, textures,
-                 scene, result.camera))
-      result.has_default_material = true;
-  }
+  std::optional<Camera> camera;
+  for (const toml::node& node : *meshes)
+    add_mesh(TableReader(file.string(), "mesh", *node.as_table()), file.parent_path(), reach, textures, scene,
+             camera);
   scene.textures = textures->take();
   read_toml_lights(root, file, reach, scene);
   scene.files.insert(scene.files.end(), reach.files().begin(), reach.files().end());
-  return result;
+  return camera;
 }
 
-void require_renderable(const Scene& scene, const std::string& file) {
-  if (scene.triangles.empty()) fail_at_key(file, "mesh", "no triangle with an area", "one or more");
-  if (!has_light(scene)) {
-    fail_at_key(file, "mesh", "no light",
-                "one triangle or more with a material that emits (OBJ: Ke, glTF: emissiveFactor)");
-  }
+/// In the scene's normal unit (normalise.hpp) the camera, too, has coordinates that are allowed.
+void require_camera_in_reach(const Scene& scene, const std::filesystem::path& file) {
+  const Camera& camera = scene.camera;
+  const double farthest = std::max({std::abs(camera.position.x), std::abs(camera.position.y),
+                                    std::abs(camera.position.z), camera.orthographic_height.value_or(0.0)});
+  if (farthest / largest_coordinate(scene) <= kMaxCoordinate) return;
+  fail_at_key(file.string(), "camera", "a position or height that is too large for the meshes",
+              "at most 1e100 times the largest coordinate of a mesh");
 }
 
 void add_light_with_note(Scene& scene, const std::filesystem::path& file) {
   add_default_light(scene);
-  scene.notes.add("no triangle emits, so a square light above and behind the camera is added", file.string());
+  scene.notes.add(
+      "no triangle emits (OBJ: Ke, glTF: emissiveFactor), so a square light above and behind the camera is "
+      "added",
+      file.string());
 }
 
 /// The scene of a mesh file that is opened directly, without a scene.toml.
@@ -266,7 +285,6 @@ Scene mesh_scene(const std::filesystem::path& file, bool is_outside_allowed) {
   } else {
     scene.camera = framing_camera(scene);
     scene.notes.add("no camera, so one that sees the whole mesh is used", file.string());
-    if (!has_light(scene)) add_light_with_note(scene, file);
   }
   return scene;
 }
@@ -283,12 +301,11 @@ Scene toml_scene(const std::filesystem::path& file, bool is_outside_allowed) {
   scene.film = read_film(root, file.string());
   std::optional<Camera> camera;
   if (root.contains("camera")) camera = read_camera(subtable(root, file.string(), "camera"));
-  const OfMeshes of_meshes = add_meshes(root, file, is_outside_allowed, scene);
-  if (!camera) camera = of_meshes.camera;
+  const std::optional<Camera> camera_of_mesh = add_meshes(root, file, is_outside_allowed, scene);
+  if (!camera) camera = camera_of_mesh;
   if (!camera)
     fail_at_key(file.string(), "camera", "none", "one [camera] table, or a mesh file that holds one");
   scene.camera = *camera;
-  if (of_meshes.has_default_material && !has_light(scene)) add_light_with_note(scene, file);
   return scene;
 }
 
@@ -299,11 +316,13 @@ Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
   Scene scene = has_suffix(file, {".toml"}) ? toml_scene(file, is_outside_allowed)
                                             : mesh_scene(file, is_outside_allowed);
   complete_corner_attributes(scene.corners, scene.triangles.size());
+  if (scene.triangles.empty()) fail_at_key(file.string(), "mesh", "no triangle with an area", "one or more");
+  require_camera_in_reach(scene, file);
+  if (!has_light(scene)) add_light_with_note(scene, file);
   scene.notes.add("a triangle without area is left out", file.string(), scene.degenerate_triangles);
   scene.notes.add("a triangle that repeats another one is left out", file.string(),
                   remove_repeated_triangles(scene));
   keep_used_textures(scene);
-  require_renderable(scene, file.string());
   return scene;
 }
 

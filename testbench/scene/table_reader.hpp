@@ -54,25 +54,27 @@ class TableReader {
 
   bool has(const char* key) const { return table_.contains(key); }
 
-  /// Whether the table holds the first of two groups of keys. Fails unless it holds one of them completely
-  /// and no key of the other.
-  bool has_first_of(std::initializer_list<const char*> first,
-                    std::initializer_list<const char*> second) const {
-    const auto present = [this](const char* key) { return has(key); };
-    const bool first_whole = std::all_of(first.begin(), first.end(), present);
-    const bool second_whole = std::all_of(second.begin(), second.end(), present);
-    const bool any_first = std::any_of(first.begin(), first.end(), present);
-    const bool any_second = std::any_of(second.begin(), second.end(), present);
-    if (first_whole && !any_second) return true;
-    if (second_whole && !any_first) return false;
+  /// The number of the group of keys, from 0 on, that the table holds. Fails unless it holds one of them
+  /// completely and no key of another.
+  std::size_t group_of(std::initializer_list<std::initializer_list<const char*>> groups) const {
     std::string found;
-    for (const auto& group : {first, second}) {
+    std::string allowed;
+    std::size_t begun = 0;
+    std::size_t whole = groups.size();
+    std::size_t number = 0;
+    for (const auto& group : groups) {
+      std::size_t keys = 0;
       for (const char* key : group) {
-        if (has(key)) found += (found.empty() ? "" : " and ") + std::string(key);
+        if (!has(key)) continue;
+        ++keys;
+        found += (found.empty() ? "" : " and ") + std::string(key);
       }
+      begun += keys > 0;
+      if (keys == group.size()) whole = number;
+      allowed += (number++ == 0 ? "either " : " or ") + joined(group);
     }
-    fail_at_key(where(table_), name_, found.empty() ? "neither form" : found,
-                "either " + joined(first) + " or " + joined(second));
+    if (begun == 1 && whole < groups.size()) return whole;
+    fail_at_key(where(table_), name_, found.empty() ? "neither form" : found, allowed);
   }
 
   /// A number in the open interval (low, high).

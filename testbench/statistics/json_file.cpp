@@ -207,6 +207,10 @@ class SchemaCheck {
 
 }  // namespace
 
+std::string json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 Json parse_json_object(const std::string& text, const std::string& origin, const std::string& allowed,
                        std::size_t first_line) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)

@@ -6,6 +6,10 @@
 
 namespace testbench {
 
+/// The JSON as text, on one line, or over several with `indent` blanks a level. Bytes that are no UTF-8, as
+/// in the name of a file, become U+FFFD: such a name costs no run.
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
 /// What a value of a JSON file may be. A count is an integer of 0 or more.
 enum class JsonType : std::uint8_t { text, flag, count, number, number_or_none, scalar, list, object, any };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -13,27 +14,26 @@ using Json = nlohmann::ordered_json;
 /// A rank's part as it travels: a line of JSON, then the film's bytes.
 std::string render_part(const Scene& scene, RenderRequest request, const path_tracer::Work& work,
                         const RenderProgress& progress) {
-  if (work.samples == 0) return Json::object().dump() + "\n";
+  if (work.samples == 0) return json_text(Json::object()) + "\n";
   request.options.work = work;
   try {
     const RenderResult result = request.native ? render_natively(scene, request.options, progress)
                                                : render_on_chip(scene, request.options, progress);
-    return Json{{"statistics", render_statistics(request, result)}}.dump(-1, ' ', false,
-                                                                         Json::error_handler_t::replace) +
-           "\n" + result.film.bytes();
+    return json_text({{"statistics", render_statistics(request, result)}}) + "\n" + result.film.bytes();
   } catch (const InputError& error) {
-    return Json{{"error", error.what()}, {"input", true}}.dump() + "\n";
+    return json_text({{"error", error.what()}, {"input", true}}) + "\n";
   } catch (const std::exception& error) {
-    return Json{{"error", error.what()}, {"input", false}}.dump() + "\n";
+    return json_text({{"error", error.what()}, {"input", false}}) + "\n";
   }
 }
 
-void add_part(const Scene& scene, const std::string& message, RankRender& render, Json& parts) {
+void add_part(const Scene& scene, FilmSums sums, const std::string& message, RankRender& render,
+              Json& parts) {
   const std::size_t end = message.find('\n');
   Json json = Json::parse(message.substr(0, end));
   if (!json.contains("statistics")) return;
   Json& statistics = json["statistics"];
-  render.film.merge(Film::from_bytes(scene.film, film_scale(scene), message.substr(end + 1)));
+  render.film.merge(Film::from_bytes(scene.film, film_scale(scene), sums, message.substr(end + 1)));
   render.segments += statistics["segments"].get<std::uint64_t>();
   render.cpu_seconds += statistics[kSimulatorSection]["cpu_seconds"].get<double>();
   if (statistics["simulated_seconds"].is_number())
@@ -76,9 +76,10 @@ std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, cons
     messages[std::size_t(message.from)] = std::move(message.bytes);
   }
   throw_error(messages);
-  RankRender render{Film(scene.film, film_scale(scene)), 0, 0, std::nullopt, {}};
+  const FilmSums sums = request.options.film_sums;
+  RankRender render{Film(scene.film, film_scale(scene), sums), 0, 0, std::nullopt, {}};
   Json parts = Json::array();
-  for (const std::string& message : messages) add_part(scene, message, render, parts);
+  for (const std::string& message : messages) add_part(scene, sums, message, render, parts);
   render.statistics = {
       {"format", "csx600-rank-statistics-2"},
       {"scene", request.scene},

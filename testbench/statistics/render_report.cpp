@@ -12,6 +12,7 @@
 #include "testbench/run/timing_name.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/energy.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/roofline.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 
@@ -161,7 +162,7 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
 std::map<std::string, std::string> render_provenance(const RenderRequest& request,
                                                      const RenderResult& result) {
   return {{"csx600.scene", request.scene},
-          {"csx600.firmware", firmware_json(request.options).dump()},
+          {"csx600.firmware", json_text(firmware_json(request.options))},
           {"csx600.machine", request.native ? "native" : "chip " + request.options.chip.preset},
           {"csx600.segments", std::to_string(result.counts.segments)},
           {"csx600.image_sha256", result.film.sha256()}};

@@ -148,7 +148,7 @@ void require_point_statistics(const Json& json, const std::string& origin) {
 }
 
 std::string value_of(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_string() ? value.get<std::string>() : json_text(value);
 }
 
 std::string unit_of(const std::string& key) {
@@ -184,7 +184,7 @@ std::string statistics_csv(const Json& statistics) {
   std::string csv = "key,unit,value,meaning\n";
   for (const auto& [key, value] : flatten(statistics)) {
     const Counter* const counter = find_counter(key);
-    const std::string field = value.is_string() ? csv_text(value.get<std::string>()) : value.dump();
+    const std::string field = value.is_string() ? csv_text(value.get<std::string>()) : json_text(value);
     csv += csv_text(key) + ',' + (counter == nullptr ? "" : counter->unit) + ',' + field + ',' +
            (counter == nullptr ? "" : csv_text(counter->meaning)) + '\n';
   }
@@ -193,7 +193,7 @@ std::string statistics_csv(const Json& statistics) {
 
 std::string statistics_json(const Json& statistics) {
   // The scene's path may be no UTF-8, which costs the path but not the statistics.
-  return statistics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(statistics, 2) + "\n";
 }
 
 std::string statistics_for_file(const std::string& path, const Json& statistics) {

@@ -108,7 +108,7 @@ void PointStore::read() {
   for (std::string line; std::getline(lines, line);) take_line(line, ++number, build_);
   if (whole < text.size() && ftruncate(descriptor_, off_t(whole)) != 0)
     throw RunError(path_.string() + ": cannot be shortened: " + std::strerror(errno));
-  if (whole == 0) append(Json{{"format", kFormat}, {"build", build_}}.dump());
+  if (whole == 0) append(json_text({{"format", kFormat}, {"build", build_}}));
 }
 
 void PointStore::take_line(const std::string& line, std::size_t number, const std::string& build) {
@@ -157,7 +157,7 @@ const PointStore::Json* PointStore::find(const std::string& id) const {
 void PointStore::add(const std::string& id, Json result) {
   Json line = {{"id", id}};
   line.update(result);
-  append(line.dump());
+  append(json_text(line));
   points_[id] = std::move(line);
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/processes.hpp"
 
@@ -22,11 +23,11 @@ Json done_point(const SweepPoint& point, const RenderResult& result, const char*
 }
 
 std::string in_full(const SweepPoint& point) {
-  return done_point(point, render_on_chip(*point.scene, point.request.options), "full").dump();
+  return json_text(done_point(point, render_on_chip(*point.scene, point.request.options), "full"));
 }
 
 std::string replayed(const SweepPoint& point, const Recording& recording) {
-  return done_point(point, replay_on_chip(recording, point.request.options), "replayed").dump();
+  return json_text(done_point(point, replay_on_chip(recording, point.request.options), "replayed"));
 }
 
 std::string audited(const SweepPoint& point, const Recording& recording) {
@@ -36,7 +37,7 @@ std::string audited(const SweepPoint& point, const Recording& recording) {
   const std::string difference = first_difference(replay["statistics"], Json::parse(both[1])["statistics"]);
   if (!difference.empty()) throw RunError("audit: replayed and full run differ: " + difference);
   replay["audited"] = true;
-  return replay.dump();
+  return json_text(replay);
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ std::string first_difference(const Json& a, const Json& b) {
   const std::string path = changes[0]["path"];
   const Json::json_pointer pointer(path);
   const auto text = [&](const Json& json) {
-    return json.contains(pointer) ? json[pointer].dump() : "missing";
+    return json.contains(pointer) ? json_text(json[pointer]) : "missing";
   };
   return path + ": " + text(a) + ", " + text(b);
 }

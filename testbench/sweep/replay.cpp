@@ -9,7 +9,7 @@ namespace testbench {
 Recording record_render(const Scene& scene, const RenderOptions& options) {
   TimingStream stream;
   RenderResult result = render_natively(scene, options, {}, &stream);
-  return {make_mono_image(scene, options.chip.chip.pes, options.program), std::move(stream),
+  return {make_normal_mono_image(scene, options.chip.chip.pes, options.program), std::move(stream),
           std::move(result)};
 }
 
@@ -18,7 +18,7 @@ RenderResult replay_on_chip(const Recording& recording, const RenderOptions& opt
   require_mono_memory(recording.image, options.chip);
   RenderResult result = recording.result;
   // The host fetches as many results as in a full run and drops them.
-  Film nobody_looks_at(result.film.size(), result.film.scale());
+  Film nobody_looks_at(result.film.size(), result.film.scale(), FilmSums::means);
   model::Csx600 chip("csx600", options.chip, options.timing);
   HostPc host("host", chip, recording.image, nobody_looks_at);
   chip.pio_engine.leave_data(true);

@@ -27,14 +27,14 @@ bool is_audited(const std::string& id, const SweepFile& file) {
 
 /// What the firmware sees of a scene: the host's image of it, for a firmware that all scenes share.
 std::string scene_digest(const Scene& scene) {
-  const MonoImage image = make_mono_image(scene, cn::kStripLanes, path_tracer::ProgramConfig());
+  const MonoImage image = make_normal_mono_image(scene, cn::kStripLanes, path_tracer::ProgramConfig());
   return sha256({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
 }
 
 }  // namespace
 
-Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides)
-    : keys_(file.keys()), base_(file.base) {
+Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides, bool is_outside_allowed)
+    : keys_(file.keys()), base_(file.base), is_outside_allowed_(is_outside_allowed) {
   for (const SweepAxis& axis : file.axes) axes_.push_back(axis.keys);
   for (const Setting& setting : overrides) {
     require_setting(setting);
@@ -88,7 +88,8 @@ const Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
     if (run.scene.empty())
       throw InputError("scene: found none; allowed: a directory with a scene.toml, or a .toml file");
     loaded = std::make_unique<LoadedScene>();
-    loaded->scene = load_scene(run.scene);
+    loaded->scene = load_scene(run.scene, is_outside_allowed_);
+    notes_.emplace(run.scene, loaded->scene.notes);
     if (!run.size.empty()) loaded->scene.film = *parse_film_size(run.size);
     loaded->digest = scene_digest(loaded->scene);
   }

@@ -24,13 +24,16 @@ struct SweepPoint {
 /// All points of a sweep, with the scenes they render.
 class Sweep {
  public:
-  /// @param overrides take the place of the file's base values. Throws InputError.
-  Sweep(const SweepFile& file, const std::vector<Setting>& overrides);
+  /// @param overrides take the place of the file's base values
+  /// @param is_outside_allowed see load_scene(). Throws InputError.
+  Sweep(const SweepFile& file, const std::vector<Setting>& overrides, bool is_outside_allowed = false);
 
   const std::vector<std::string>& keys() const { return keys_; }
   const std::vector<std::vector<std::string>>& axes() const { return axes_; }  ///< their keys
   const std::vector<Setting>& base() const { return base_; }
   const std::vector<SweepPoint>& points() const { return points_; }
+  /// Of every scene, by its path.
+  const std::map<std::string, Notes>& notes() const { return notes_; }
 
  private:
   struct LoadedScene {
@@ -44,7 +47,9 @@ class Sweep {
   std::vector<std::string> keys_;
   std::vector<std::vector<std::string>> axes_;
   std::vector<Setting> base_;
+  bool is_outside_allowed_;
   std::map<std::string, std::unique_ptr<LoadedScene>> scenes_;  ///< by path and size
+  std::map<std::string, Notes> notes_;
   std::vector<SweepPoint> points_;
 };
 

@@ -3,6 +3,7 @@
 #include <deque>
 #include <set>
 
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/sweep/point_work.hpp"
 #include "testbench/sweep/sweep_plan.hpp"
 #include "testbench/system/error.hpp"
@@ -28,7 +29,7 @@ class PointServer {
   /// { point, id, replays } to { point, result: a PointStore line }. Does not throw.
   std::string answer(const std::string& text) {
     const Json order = Json::parse(text);
-    return Json{{"point", order["point"]}, {"result", run(order)}}.dump();
+    return json_text({{"point", order["point"]}, {"result", run(order)}});
   }
 
  private:
@@ -125,7 +126,7 @@ class SweepRun {
       const std::optional<SweepPlan::Order> order = plan_.next(server);
       if (!order) return;
       const std::string text =
-          Json{{"point", order->point}, {"id", point(order->point).id}, {"replays", order->replays}}.dump();
+          json_text({{"point", order->point}, {"id", point(order->point).id}, {"replays", order->replays}});
       if (server < 0) {
         ranks_.send(-server, text);
       } else {

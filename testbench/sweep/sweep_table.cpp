@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "testbench/files/csv.hpp"
+#include "testbench/statistics/json_file.hpp"
 
 namespace testbench {
 namespace {
@@ -87,7 +88,7 @@ Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
 }
 
 std::string field(const Json& value) {
-  return value.is_string() ? csv_text(value.get<std::string>()) : value.dump();
+  return value.is_string() ? csv_text(value.get<std::string>()) : json_text(value);
 }
 
 }  // namespace

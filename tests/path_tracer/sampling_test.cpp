@@ -214,7 +214,7 @@ class CameraSampling : public Sampling {
   static CameraRecord readable_camera(int width, int height) {
     CameraRecord camera;
     camera.position = {5, 6, 7};
-    camera.corner = {0, 0, 1};
+    camera.direction = {0, 0, 1};
     camera.right = {1, 0, 0};
     camera.down = {0, 1, 0};
     camera.width = width;
@@ -308,7 +308,7 @@ TEST_F(CameraSampling, TheLastRowsOfEveryWidth) {
 
 TEST_F(CameraSampling, DirectionsGoThroughTheFilm) {
   CameraRecord camera;
-  camera.corner = {-3, 2, 4};
+  camera.direction = {-3, 2, 4};
   camera.right = {0.5, 0.25, 0};
   camera.down = {0, -0.5, 0.125};
   camera.width = 40;
@@ -320,6 +320,35 @@ TEST_F(CameraSampling, DirectionsGoThroughTheFilm) {
   EXPECT_NEAR(s.direction.x[0], expected.x, 4e-16);
   EXPECT_NEAR(s.direction.y[0], expected.y, 4e-16);
   EXPECT_NEAR(s.direction.z[0], expected.z, 4e-16);
+}
+
+/// All numbers have few digits, so the sums are exact.
+TEST_F(CameraSampling, OrthographicRaysStartOnTheFilmAndAreParallel) {
+  CameraRecord camera;
+  camera.position = {-3, 2, 4};
+  camera.direction = {0, 0.6, -0.8};
+  camera.right = {0.5, 0.25, 0};
+  camera.down = {0, -0.5, 0.125};
+  camera.width = 40;
+  camera.height = 30;
+  camera.is_orthographic = 1;
+  Vectors origin{per_pe<double>(), per_pe<double>(), per_pe<double>()};
+  Vectors direction = origin;
+  run([&] {
+    const auto ray = path_tracer::sample_camera(camera, 40 * 11 + 23, 0.25, 0.5);
+    store(origin.x, ray.origin.x);
+    store(origin.y, ray.origin.y);
+    store(origin.z, ray.origin.z);
+    store(direction.x, ray.direction.x);
+    store(direction.y, ray.direction.y);
+    store(direction.z, ray.direction.z);
+  });
+  EXPECT_EQ(origin.x[0], -3 + 0.5 * 23.25);
+  EXPECT_EQ(origin.y[0], 2 + 0.25 * 23.25 - 0.5 * 11.5);
+  EXPECT_EQ(origin.z[0], 4 + 0.125 * 11.5);
+  EXPECT_EQ(direction.x[0], 0.0);
+  EXPECT_EQ(direction.y[0], 0.6);
+  EXPECT_EQ(direction.z[0], -0.8);
 }
 
 }  // namespace sampling_test

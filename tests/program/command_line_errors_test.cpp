@@ -191,7 +191,6 @@ TEST_F(CommandLineErrors, BrokenScene) {
       {"no mesh",
        [](SceneFiles& s) { s.toml = s.toml.substr(0, s.toml.find("[[mesh]]")); },
        {"scene.toml", "mesh"}},
-      {"no light", [](SceneFiles& s) { s.mtl = replaced(s.mtl, "Ke 1 2 3", "Ke 0 0 0"); }, {"light", "Ke"}},
       {"vertex index",
        [](SceneFiles& s) { s.obj = replaced(s.obj, "f 1 2 3", "f 1 2 9"); },
        {"mesh.obj", "9", "1 to 3"}},

@@ -83,6 +83,14 @@ TEST(GeneratedScene, TheStadiumIsAHundredThousandTimesLargerThanItsBlob) {
   EXPECT_NEAR((all.upper.x - all.lower.x) / (object.upper.x - object.lower.x), 1e5, 0.3e5);
 }
 
+TEST(GeneratedScene, AnOrthographicCameraComesBackFromItsFile) {
+  const test_support::TemporaryDirectory directory;
+  Scene scene = generate_scene(GeneratedScene::blob, 200);
+  scene.camera.orthographic_height = 612.3;
+  save_scene(scene, directory.path());
+  EXPECT_EQ(testbench::load_scene(directory.path()).camera.orthographic_height, 612.3);
+}
+
 TEST(GeneratedScene, NumbersOutOfRangeAreNamed) {
   EXPECT_THROW(generate_scene(GeneratedScene::blob, 99), testbench::InputError);
   EXPECT_THROW(generate_scene(GeneratedScene::blob, 10000001), testbench::InputError);

@@ -227,8 +227,21 @@ TEST_F(GltfMesh, WithACameraAndALightIsASceneOfItsOwn) {
   EXPECT_EQ(scene.film.width, 720);
   EXPECT_EQ(scene.film.height, 480);
   EXPECT_EQ(scene.camera.position, glm::dvec3(0, 0, 3));
-  gltf.materials = R"("materials":[{}])";
-  EXPECT_THROW(testbench::load_scene(write(gltf)), InputError);
+}
+
+// It was refused. Exported files often hold a camera and no light that has an area, and a viewer lights them.
+TEST_F(GltfMesh, WithACameraAndNoLightGetsTheDefaultLight) {
+  Gltf gltf;
+  gltf.scenes = R"("scenes":[{"nodes":[0,1]}])";
+  gltf.nodes = R"("nodes":[{"mesh":0},{"camera":0,"translation":[0,0,3]}])";
+  gltf.more = kCameras;
+  const testbench::Scene scene = testbench::load_scene(write(gltf));
+  EXPECT_EQ(scene.camera.position, glm::dvec3(0, 0, 3));
+  ASSERT_EQ(scene.triangles.size(), 3u);
+  EXPECT_GT(scene.materials.at(std::size_t(scene.triangles[1].material)).emission.x, 0.0);
+  for (const glm::dvec3& vertex : scene.triangles[1].vertex) EXPECT_GT(vertex.z, 3.0) << "behind the camera";
+  ASSERT_EQ(scene.notes.lines().size(), 1u);
+  EXPECT_NE(scene.notes.lines()[0].find("a.gltf: no triangle emits"), std::string::npos);
 }
 
 TEST_F(GltfMesh, LendsItsCameraToASceneFile) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "testbench/scene/gltf_mesh.hpp"
+#include "testbench/scene/scene_file.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -206,6 +207,57 @@ TEST_F(GltfSchema, OfCamerasOnlyTheOneInUseMatters) {
   EXPECT_EQ(loaded.camera->camera.vertical_field_of_view_radians, 0.8);
   ASSERT_EQ(loaded.mesh.notes.lines().size(), 1u);
   EXPECT_NE(loaded.mesh.notes.lines()[0].find("/cameras/2: an orthographic camera"), std::string::npos);
+}
+
+/// The full file with one orthographic camera, 6 units wide and 4 high, in place of its perspective one.
+GltfBuilder orthographic_file() {
+  GltfBuilder file = full_file();
+  file.root["cameras"][0] = {{"type", "orthographic"},
+                             {"name", "plan"},
+                             {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 100}}}};
+  return file;
+}
+
+TEST_F(GltfSchema, AnOrthographicCameraIsUsedIfThereIsNoOther) {
+  GltfBuilder file = orthographic_file();
+  const testbench::GltfFile loaded = load(file);
+  ASSERT_TRUE(loaded.camera);
+  EXPECT_EQ(loaded.camera->camera.orthographic_height, 4.0);
+  EXPECT_EQ(loaded.camera->aspect_ratio, 1.5);
+  EXPECT_EQ(loaded.camera->camera.position, glm::dvec3(0, 0, 4));
+  EXPECT_EQ(loaded.camera->camera.direction, glm::dvec3(0, 0, -1));
+  EXPECT_TRUE(loaded.mesh.notes.lines().empty());
+  file.root["nodes"][1]["matrix"][0] = file.root["nodes"][1]["matrix"][5] = 7;
+  EXPECT_EQ(load(file).camera->camera.orthographic_height, 4.0) << "a node's scale changes no view";
+  for (const auto& [pointer, value] :
+       std::vector<std::pair<const char*, json>>{{"/cameras/0/orthographic/xmag", 0},
+                                                 {"/cameras/0/orthographic/ymag", -1},
+                                                 {"/cameras/0/orthographic/ymag", 1e100},
+                                                 {"/cameras/0/orthographic/znear", -1},
+                                                 {"/cameras/0/orthographic/zfar", "far"},
+                                                 {"/cameras/0/orthographic", 3}}) {
+    GltfBuilder wrong = orthographic_file();
+    wrong.root[json::json_pointer(pointer)] = value;
+    test_support::expect_input_error([&, &w = wrong] { load(w); }, {pointer, "allowed: "});
+  }
+  file.root["cameras"][0].erase("orthographic");
+  test_support::expect_input_error([&] { load(file); }, {"/cameras/0/orthographic", "none"});
+}
+
+TEST_F(GltfSchema, ASceneFileNamesTheCamera) {
+  GltfBuilder file = orthographic_file();
+  file.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 1}}}});
+  file.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.25}, {"znear", 1}}}});
+  file.add_node({{"camera", 1}});
+  file.add_node({{"camera", 2}, {"name", "side"}});
+  EXPECT_EQ(load(file).camera->camera.vertical_field_of_view_radians, 0.5) << "the first perspective one";
+  const auto scene = [&](const std::string& more) {
+    return testbench::load_scene(write("scene.toml", "[[mesh]]\nfile = \"a.gltf\"\nscale = 3\n" + more));
+  };
+  EXPECT_FALSE(scene("").camera.orthographic_height);
+  EXPECT_EQ(scene("camera = \"plan\"\n").camera.orthographic_height, 12.0) << "scaled as the mesh is";
+  EXPECT_EQ(scene("camera = \"side\"\n").camera.vertical_field_of_view_radians, 0.25) << "its node's name";
+  test_support::expect_input_error([&] { scene("camera = \"top\"\n"); }, {"a.gltf", "/cameras", "'top'"});
 }
 
 TEST_F(GltfSchema, RefusesACameraOutOfReach) {

@@ -109,6 +109,7 @@ TEST_F(SceneFileTest, refuses_unknown_keys) {
                {"scene.toml:5", "camera.zoom", "look_at", "film_height"});
   expect_error(good + "rotate = 2\n",
                {"scene.toml:7", "mesh.rotate", "file, scale, rotate_degrees, translate"});
+  expect_error(good + "camera = \"front\"\n", {"scene.toml:7", "mesh.camera", "glTF"});
   expect_error(good + "[film]\nwidht = 2\n", {"scene.toml:8", "film.widht", "width, height"});
 }
 
@@ -177,9 +178,47 @@ TEST_F(SceneFileTest, refuses_bad_film_and_mesh_values) {
   expect_error(mesh + "scale = 1e99\ntranslate = [1e100, 0, 0]\n", {"mesh.scale", "1e100"});
 }
 
-TEST_F(SceneFileTest, refuses_a_scene_without_light) {
+// It was refused. A renderer that shows a mesh alone under a light of its own should show the same mesh when
+// its camera is set; the note says how to light it otherwise.
+TEST_F(SceneFileTest, a_scene_without_light_gets_one) {
   write("a.mtl", "newmtl lamp\nKd 0.5 0.5 0.5\n");
-  expect_error(std::string(kCamera) + kMesh, {"scene.toml", "no light", "Ke"});
+  const Scene scene = load(std::string(kCamera) + kMesh);
+  ASSERT_EQ(scene.triangles.size(), 3U);
+  EXPECT_GT(scene.materials.at(std::size_t(scene.triangles[2].material)).emission.x, 0.0);
+  ASSERT_EQ(scene.notes.lines().size(), 1U);
+  for (const char* part : {"scene.toml: no triangle emits", "Ke", "emissiveFactor", "square light"})
+    EXPECT_NE(scene.notes.lines()[0].find(part), std::string::npos) << scene.notes.lines()[0];
+}
+
+TEST_F(SceneFileTest, a_mesh_that_a_transform_flattens_is_refused) {
+  expect_error(std::string(kCamera) + kMesh + "scale = 1e-300\ntranslate = [1, 1, 1]\n",
+               {"scene.toml", "mesh", "no triangle with an area"});
+}
+
+TEST_F(SceneFileTest, a_camera_is_not_too_far_from_a_mesh_or_too_large_for_it) {
+  const std::string tiny = kMesh + std::string("scale = 1e-90\n");
+  EXPECT_NO_THROW(
+      load("[camera]\nposition = [0, 0, -9e9]\ndirection = [0, 0, 1]\nvertical_fov_degrees = 40\n" + tiny));
+  for (const std::string camera : {"position = [0, 9e11, 0]\nvertical_fov_degrees = 40\n",
+                                   "position = [0, 0, 0]\northographic_height = 9e11\n"})
+    expect_error("[camera]\ndirection = [0, 0, 1]\n" + camera + tiny,
+                 {"scene.toml", "camera", "too large", "1e100 times"});
+}
+
+TEST_F(SceneFileTest, an_orthographic_camera_has_a_height) {
+  const std::string aimed = "[camera]\nposition = [1, 2, 3]\ndirection = [0, 0, -2]\n";
+  const Scene scene = load(aimed + "orthographic_height = 2.5\n" + kMesh);
+  EXPECT_EQ(scene.camera.orthographic_height, 2.5);
+  EXPECT_EQ(scene.camera.position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(scene.camera.direction, glm::dvec3(0, 0, -1));
+  EXPECT_FALSE(load(aimed + "vertical_fov_degrees = 40\n" + kMesh).camera.orthographic_height);
+  for (const std::string bad : {"0", "-1", "nan", "inf", "1e100", "\"2\"", "[2]"})
+    expect_error(aimed + "orthographic_height = " + bad + "\n" + kMesh,
+                 {"scene.toml:4", "camera.orthographic_height", "found ", "greater than 0"});
+  for (const std::string other : {"vertical_fov_degrees = 40", "focal_length = 1", "film_height = 1"})
+    expect_error(aimed + "orthographic_height = 2\n" + other + "\n" + kMesh,
+                 {"scene.toml:1", "camera", other.substr(0, other.find(' ')), "orthographic_height"});
+  expect_error(aimed + kMesh, {"neither form", "or orthographic_height"});
 }
 
 TEST_F(SceneFileTest, refuses_broken_or_missing_files) {

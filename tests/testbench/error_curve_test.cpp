@@ -135,6 +135,18 @@ TEST(LightPixels, AreThoseThatATriangleTouches) {
   EXPECT_EQ(marked(scene), 0) << "its back emits nothing";
 }
 
+TEST(LightPixels, OfAnOrthographicCameraDoNotDependOnTheDistance) {
+  for (const double z : {0.5, 1.0, 1000.0}) {
+    Scene scene = light_scene({{1, 1, z}, {1, -1, z}, {-1, -1, z}}, {8, 8});
+    scene.camera.orthographic_height = 2.0;
+    EXPECT_EQ(marked(scene), 36) << z;
+    scene.camera.orthographic_height = 4.0;  // half as large: 6 pixels below the diagonal and 4 on it
+    EXPECT_EQ(marked(scene), 10) << z;
+    scene.camera.position.z = z + 1;
+    EXPECT_EQ(marked(scene), 0) << "behind the film";
+  }
+}
+
 TEST(LightPixels, SurfacesThatDoNotEmitAreNone) {
   Scene scene = light_scene({{1, 1, 1}, {1, -1, 1}, {-1, -1, 1}}, {8, 8});
   scene.triangles.push_back(

@@ -13,6 +13,7 @@ namespace film_test {
 
 using testbench::Film;
 using testbench::FilmSize;
+using testbench::FilmSums;
 
 struct Sample {
   int pixel;
@@ -205,14 +206,38 @@ TEST(Film, survives_the_way_to_another_process) {
   Film film({3, 2}, 16.0);
   for (const Sample& s : wild_samples(6, 300)) film.add(s.pixel, s.radiance);
   film.add(0, {-1.0, 0.0, 0.0});
-  const Film copy = Film::from_bytes({3, 2}, 16.0, film.bytes());
+  const Film copy = Film::from_bytes({3, 2}, 16.0, FilmSums::means_and_variances, film.bytes());
   expect_same_bits(film, copy);
   EXPECT_EQ(copy.rejected().negative, 1u);
   Film twice = film;
   twice.merge(copy);
   EXPECT_EQ(twice.sample_count(0), 2 * film.sample_count(0));
-  EXPECT_THROW(Film::from_bytes({2, 2}, 16.0, film.bytes()), std::invalid_argument);
-  EXPECT_THROW(Film::from_bytes({3, 2}, 16.0, ""), std::invalid_argument);
+  EXPECT_THROW(Film::from_bytes({2, 2}, 16.0, FilmSums::means_and_variances, film.bytes()),
+               std::invalid_argument);
+  EXPECT_THROW(Film::from_bytes({3, 2}, 16.0, FilmSums::means_and_variances, ""), std::invalid_argument);
+}
+
+TEST(Film, of_means_alone_has_the_same_means) {
+  Film both({3, 2}, 16.0);
+  Film means({3, 2}, 16.0, FilmSums::means);
+  for (const Sample& s : wild_samples(6, 300)) {
+    both.add(s.pixel, s.radiance);
+    means.add(s.pixel, s.radiance);
+  }
+  EXPECT_EQ(means.rgb(), both.rgb());
+  EXPECT_EQ(means.sha256(), both.sha256());
+  EXPECT_EQ(both.bytes().size() - means.bytes().size(), 6u * 3u * 16u) << "three numbers of 128 bits a pixel";
+  EXPECT_THROW(means.variance_of_mean(0), std::logic_error);
+  const Film copy = Film::from_bytes({3, 2}, 16.0, FilmSums::means, means.bytes());
+  EXPECT_EQ(copy.sha256(), means.sha256());
+  EXPECT_THROW(Film::from_bytes({3, 2}, 16.0, FilmSums::means, both.bytes()), std::invalid_argument);
+  EXPECT_THROW(means.merge(both), std::invalid_argument);
+  EXPECT_THROW(both.merge(means), std::invalid_argument);
+  means.merge(copy);
+  EXPECT_EQ(means.sha256(), both.sha256()) << "twice the sum of twice the samples";
+  Film once({1, 1}, 1.0, FilmSums::means);
+  once.add(0, glm::dvec3(0.5));
+  EXPECT_EQ(once.variance_of_mean(0), glm::dvec3(0.0));
 }
 
 TEST(FilmScale, is_the_power_of_two_at_or_above_the_largest_emission) {

@@ -47,6 +47,10 @@ class Golden : public testing::Test {
 
 const std::string kHead = "width = 6\nheight = 4\nsamples = 1\n";
 
+testbench::GoldenTables run(const GoldenGrid& grid, int jobs) {
+  return testbench::run_golden(grid, testbench::load_golden_scenes(grid), jobs);
+}
+
 std::string product(const std::string& more) {
   return "[[grid]]\nscene = [\"" + std::string(CSX600_SCENES_DIR) + "/cornell_box\"]\n" + more;
 }
@@ -73,7 +77,10 @@ TEST_F(Golden, GridIsEveryCombination) {
 }
 
 TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
-  EXPECT_NE(refusal("width = ").find("grid.toml: cannot be read as TOML"), std::string::npos);
+  EXPECT_NE(refusal("width = ").find("grid.toml:1: cannot be read as TOML"), std::string::npos);
+  EXPECT_NE(refusal("height = 4\nwidth = ").find("grid.toml:2: cannot"), std::string::npos);
+  EXPECT_EQ(refusal("height = 4\nwidth = 0.5\nsamples = 1\n" + kOneRun),
+            "grid.toml:2: width: found '0.5', allowed is an integer from 1 to 10000");
   EXPECT_EQ(refusal("height = 4\nsamples = 1\n" + kOneRun),
             "grid.toml: width: found none, allowed is an integer from 1 to 10000");
   EXPECT_EQ(refusal(kHead), "grid.toml: grid: found none, allowed is one [[grid]] or more");
@@ -104,6 +111,21 @@ TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
             "grid.toml:6: samples: found it in a [[grid]], allowed is width, height and samples of the whole "
             "file, above");
   EXPECT_EQ(of_key("firmware.depth = [2]").rfind("grid.toml:6: found the key 'firmware.depth'", 0), 0u);
+}
+
+TEST_F(Golden, ChipFilesAreRelativeToTheGrid) {
+  std::filesystem::create_directories(directory_ / "chips/other");
+  write("chips/slow.toml", "preset = \"csx600\"\n[pio]\nsetup_cycles = 777\n");
+  const GoldenGrid read = grid(kHead + product("chip = [\"chips/slow.toml\"]\n"));
+  ASSERT_EQ(read.runs.size(), 1u);
+  EXPECT_EQ(read.runs[0].options.chip.pio.setup_cycles, 777);
+  EXPECT_EQ(read.runs[0].file, "cornell_box-slow.csv");
+  EXPECT_EQ(refusal(kHead + product("chip = [\"slow.toml\"]\n")).rfind("grid.toml:6: ", 0), 0u);
+  write("chips/other/slow.toml", "preset = \"csx600\"\n");
+  EXPECT_NE(refusal(kHead + product("chip = [\"chips/slow.toml\", \"chips/other/slow.toml\"]\n"))
+                .find("allowed is files of different names"),
+            std::string::npos)
+      << "the second one would take the place of the first";
 }
 
 TEST_F(Golden, NamesOfEarlierGridsAreRefusedWithTheNewOnes) {
@@ -144,7 +166,7 @@ TEST_F(Golden, TreesHaveATraversalAFormatAndAWidth) {
   EXPECT_EQ(read.runs[0].name, "segments n1 both lt");
   EXPECT_EQ(read.runs[1].name, "segments n1 both lt refill fp64 2");
   EXPECT_EQ(read.runs[2].name, "segments n1 both lt refill fp64 8");
-  const GoldenTables found = testbench::run_golden(read, 1);
+  const GoldenTables found = run(read, 1);
   const auto value = [&](std::size_t run, const std::string& key) -> std::string {
     for (const auto& [name, counter] : found.at("cornell_box-csx600.csv")[run].second)
       if (name == key) return counter.dump();
@@ -156,7 +178,7 @@ TEST_F(Golden, TreesHaveATraversalAFormatAndAWidth) {
 }
 
 TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {
-  const GoldenTables found = testbench::run_golden(grid(kHead + kTwoChips), 2);
+  const GoldenTables found = run(grid(kHead + kTwoChips), 2);
   ASSERT_EQ(found.size(), 2u);
   ASSERT_EQ(found.at("cornell_box-paper.csv").size(), 8u);
   write("cornell_box-gone.csv", "key,a\n");
@@ -170,7 +192,7 @@ TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {
 }
 
 TEST_F(Golden, WhatMovedIsNamedWithItsRunsAndDistance) {
-  const GoldenTables kept = testbench::run_golden(grid(kHead + kTwoChips), 2);
+  const GoldenTables kept = run(grid(kHead + kTwoChips), 2);
   const auto set = [](GoldenTables& tables, std::size_t run, const std::string& key, double factor) {
     for (auto& [name, value] : tables.at("cornell_box-paper.csv")[run].second)
       if (name == key) value = value.get<double>() * factor;
@@ -193,11 +215,11 @@ TEST_F(Golden, WhatMovedIsNamedWithItsRunsAndDistance) {
 }
 
 TEST_F(Golden, RunsEqualWhatAnotherParameterMoves) {
-  const GoldenTables kept = testbench::run_golden(grid(kHead + kOneRun), 1);
-  EXPECT_EQ(testbench::golden_moves(kept, testbench::run_golden(grid(kHead + kOneRun), 1)), "");
+  const GoldenTables kept = run(grid(kHead + kOneRun), 1);
+  EXPECT_EQ(testbench::golden_moves(kept, run(grid(kHead + kOneRun), 1)), "");
   GoldenGrid slower = grid(kHead + kOneRun);
   slower.runs[0].options.chip.pio.setup_cycles += 1;
-  const std::string moves = testbench::golden_moves(kept, testbench::run_golden(slower, 1));
+  const std::string moves = testbench::golden_moves(kept, run(slower, 1));
   EXPECT_NE(moves.find("chip.pio.setup_cycles: in 1 of 1 runs"), std::string::npos) << moves;
   EXPECT_EQ(moves.find("image_sha256"), std::string::npos) << moves;
 }

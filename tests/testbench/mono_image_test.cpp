@@ -264,7 +264,7 @@ TEST(MonoImage, SceneWithoutLightIsRefusedByName) {
 
 /// The direction through a film position in pixels, x to the right and y down.
 glm::dvec3 direction(const CameraRecord& camera, double x, double y) {
-  return glm::normalize(vector(camera.corner) + x * vector(camera.right) + y * vector(camera.down));
+  return glm::normalize(vector(camera.direction) + x * vector(camera.right) + y * vector(camera.down));
 }
 
 TEST(MonoImage, CameraSpansTheFieldOfView) {

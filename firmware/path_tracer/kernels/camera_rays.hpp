@@ -52,7 +52,12 @@ inline CameraRay sample_camera(const CameraRecord& camera, const poly<std::int32
   const poly<std::int32_t> column = pixel - row * camera.width;
   const poly<double> x = cn::convert<double>(column) + u;
   const poly<double> y = cn::convert<double>(row) + v;
-  const Direction3 through = camera.right * x + camera.down * y + camera.corner;
+  const vec3<poly<double>> on_film = camera.right * x + camera.down * y;
+  if (camera.is_orthographic != 0) {
+    const Direction3 direction{camera.direction.x, camera.direction.y, camera.direction.z};
+    return {on_film + camera.position, direction};
+  }
+  const Direction3 through = on_film + camera.direction;
   const Point3 origin{camera.position.x, camera.position.y, camera.position.z};
   return {origin, normalize(through, through)};
 }

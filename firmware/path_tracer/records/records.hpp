@@ -11,14 +11,18 @@ using cn::vec3;
 
 inline constexpr std::int32_t kNoFace = -1;
 
-/// The camera turns a film position into a direction: corner + right * x + down * y, with x and y in pixels.
+/// The camera turns a film position, x and y in pixels, into a ray. A pinhole camera's rays start at
+/// `position` and run along direction + right * x + down * y. An orthographic camera's start at position +
+/// right * x + down * y and run along `direction`, of unit length.
 struct CameraRecord {
   vec3<double> position{};
-  vec3<double> corner{};
+  vec3<double> direction{};
   vec3<double> right{};
   vec3<double> down{};
   std::int32_t width = 0;
   std::int32_t height = 0;
+  std::int32_t is_orthographic = 0;
+  std::int32_t unused = 0;
 };
 
 /// A triangle for intersection (triangle.hpp); made by triangle_record(). Triangles that touch in one plane

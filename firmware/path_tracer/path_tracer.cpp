@@ -11,9 +11,9 @@ namespace {
 /// Manual 3.1, p. 163).
 constexpr int kStackBytes = 1024;
 
-int load_buffer_bytes(const ProgramConfig& config) {
+int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
   return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config.program), PathStage::kLoadBytes,
-                   config.uses_tree() ? TreeStage::load_bytes(config.tree) : 0});
+                   config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
@@ -39,9 +39,10 @@ std::unique_ptr<RaySearch> make_search(const StageContext& context) {
 
 }  // namespace
 
-PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config) {
+PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config,
+                                         const Layers& layers) {
   return {
-      {machine, "load buffer", {config.load_buffers(), load_buffer_bytes(config), !config.buffers_loads()}},
+      {machine, "load buffer", {config.load_buffers(), load_buffer_bytes(config, layers), !config.buffers_loads()}},
       {machine, "save buffer", {config.save_buffers(), save_buffer_bytes(config), !config.buffers_saves()}}};
 }
 
@@ -59,7 +60,7 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       config_(valid(config)),
       layout_(layout),
       bins_(make_bins(machine.poly_memory(), config.bin_blocks)),
-      rings_(make_rings(machine, config)),
+      rings_(make_rings(machine, config, layout.layers)),
       radiance_rings_(make_radiance_rings(machine, config)),
       search_(make_search(context(rings_))),
       intersection_stage_(context(rings_), search_->rays()),

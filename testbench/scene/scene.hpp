@@ -53,6 +53,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Triangle> triangles;           ///< none of zero area
   std::size_t degenerate_triangles = 0;      ///< number of triangles of zero area that the loader dropped
+  std::size_t coincident_triangles = 0;      ///< number that lie on others, as the loader found
   Notes notes;                               ///< what the loader left out or replaced
   std::vector<std::filesystem::path> files;  ///< that the loader read or that these name
 };

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "testbench/files/input_file.hpp"
+#include "testbench/scene/coincident_triangles.hpp"
 #include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/obj_mesh.hpp"
@@ -281,6 +282,7 @@ Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
   scene.notes.add("a triangle that repeats another one is left out", file.string(),
                   remove_repeated_triangles(scene));
   require_renderable(scene, file.string());
+  order_coincident_triangles(scene, file.string());
   return scene;
 }
 

@@ -14,6 +14,12 @@ inline poly<cn::MonoAddress> place_of(cn::MonoAddress first, const poly<std::int
   return cn::join_words(offset) + first;
 }
 
+/// Returns a light's number, from its place among the lights.
+inline poly<std::int32_t> light_number(const poly<cn::MonoAddress>& place, cn::MonoAddress lights) {
+  const poly<double> offset = cn::convert<double>(cn::low_word(place - lights));
+  return cn::convert<std::int32_t>(offset * (1.0 / sizeof(LightRecord)) + 0.5);
+}
+
 /// Writes the result of a finished search for the intersection stage.
 inline void write_hit(const Nearest& nearest, const Point3& origin, const Direction3& direction,
                       const cn::PolyPointer<HitRecord>& hit) {

@@ -55,6 +55,7 @@ struct LocateArguments {
   PolyPointer<TraversalRecord> record;
   TreeShape shape;
   MonoAddress triangles = 0;
+  int triangle_bytes = sizeof(TriangleRecord);  ///< of each triangle (Layers)
   MonoAddress nodes = 0;
   PolyField<MonoAddress> leaf_place;
   PolyField<MonoAddress> treelet_place;
@@ -70,6 +71,7 @@ struct TraverseArguments {
   PolyField<std::int32_t> treelet;
   TreeInSram tree;
   double reach = 0;                       ///< of the scene (triangle_record.hpp)
+  Layers layers;
   const LaneMask* loaded_leaf = nullptr;  ///< nullptr if no PE has a leaf
   LaneMask* alive = nullptr;
 };

@@ -15,6 +15,13 @@ class BufferCutter {
     offset_bytes_ += count * PolyPointer<Record>::size_bytes();
     return start;
   }
+  /// Takes so many bytes for records that begin as `Record` does.
+  template <class Record>
+  PolyPointer<Record> take_bytes(int bytes) {
+    const PolyPointer<Record> start(offset_bytes_);
+    offset_bytes_ += bytes;
+    return start;
+  }
   template <class T>
   PolyField<T> take_field() {
     const PolyField<T> field{offset_bytes_};

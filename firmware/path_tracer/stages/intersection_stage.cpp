@@ -75,6 +75,9 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   arguments.max_survival = context_.config.max_survival;
   arguments.casts_shadow_rays = context_.config.casts_shadow_rays();
   arguments.cull_shadow_rays = context_.config.cull_shadow_rays;
+  arguments.is_in_layers = context_.layout.layers.any;
+  arguments.light_place = bin.light_place;
+  arguments.lights = context_.layout.lights.address;
   arguments.scatter = to.scatter;
   arguments.shadow_ray = to.shadow_ray.ray;
   arguments.lighting = to.lighting;
@@ -87,6 +90,7 @@ void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block
   arguments.hit = from.hit;
   arguments.surface = from.surface;
   arguments.lighting = from.lighting;
+  arguments.is_in_layers = context_.layout.layers.any;
   arguments.direct_light = to.direct_light;
   context_.machine.run(context_.kernels.illuminate, arguments, bin_block(block).shadow);
 }

@@ -23,7 +23,7 @@ class TreeStage : public Stage {
   TreeStage(const StageContext& context, TreeContext& tree)
       : Stage(context), tree_(tree), kernels_(context.kernels.traversal()) {}
   static constexpr int kSaveBytes = sizeof(HitRecord) + 3 * sizeof(MonoAddress);
-  static int load_bytes(const TreeShape& shape);
+  static int load_bytes(const TreeShape& shape, const Layers& layers);
 
   bool works_on_slots() const override { return false; }
 
@@ -34,10 +34,13 @@ class TreeStage : public Stage {
     PolyField<MonoAddress> ray_place;
     PolyField<std::int32_t> treelet;
     PolyPointer<QueuedRay> ray;
-    PolyPointer<TriangleRecord> leaf;
+    PolyPointer<TriangleRecord> leaf;  ///< in a layered scene of LayeredTriangleRecords
     int treelet_offset;
   };
   Loads loads(std::uint64_t step) const;
+  int leaf_bytes() const {
+    return tree_.tree.shape.leaf_records() * context_.layout.layers.record_bytes();
+  }
 
   /// Returns the PEs with a ray in a block of the ray queue.
   LaneMask packed_rays(int block) const;

@@ -1,0 +1,279 @@
+#include "testbench/scene/coincident_triangles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "testbench/scene/triangle_overlap.hpp"
+
+namespace testbench {
+namespace {
+
+/// A triangle in a cell of the space of planes. A plane is told by the slopes of its normal, relative to its
+/// largest component, and by where it crosses that component's axis.
+struct PlaneEntry {
+  std::uint64_t cell;
+  std::uint32_t triangle;
+
+  bool operator<(const PlaneEntry& other) const {
+    return cell != other.cell ? cell < other.cell : triangle < other.triangle;
+  }
+};
+
+/// Cells that a number lies in: its own and, near the upper border, the next one. So two numbers that differ by
+/// at most that share of a cell have a cell in common.
+class Cells {
+ public:
+  Cells(double number, double near_border) {
+    constexpr double kCellsOfOne = 0x1p10;
+    constexpr double kMost = 4.0;
+    const double at = (number + kMost) * kCellsOfOne;
+    const double first = std::floor(at);
+    first_ = std::uint64_t(first);
+    last_ = at - first > 1.0 - near_border ? first_ + 1 : first_;
+  }
+  std::uint64_t first() const { return first_; }
+  std::uint64_t last() const { return last_; }
+
+ private:
+  std::uint64_t first_;
+  std::uint64_t last_;
+};
+
+/// Calls visit(cell) for the cells of a triangle's plane. Triangles within plane_tolerance() of a plane that
+/// are higher than 2^-30 of the scene's reach differ by less than 2^-14 in each slope, and so by less than
+/// 2^-13 in the crossing: they have a cell in common.
+template <class Visitor>
+void for_each_cell(const Triangle& triangle, const glm::dvec3& anchor, double extent, Visitor&& visit) {
+  const glm::dvec3 edge1 = (triangle.vertex[1] - triangle.vertex[0]) / extent;
+  const glm::dvec3 edge2 = (triangle.vertex[2] - triangle.vertex[0]) / extent;
+  const glm::dvec3 at = (triangle.vertex[0] - anchor) / extent;
+  const glm::dvec3 normal = glm::cross(edge1, edge2);
+  const glm::dvec3 size = glm::abs(normal);
+  const double largest = std::max({size.x, size.y, size.z});
+  for (int axis = 0; axis < 3; ++axis) {
+    if (size[axis] < largest * (1.0 - 0x1p-12)) continue;
+    const int second = (axis + 1) % 3;
+    const int third = (axis + 2) % 3;
+    const double slope2 = normal[second] / normal[axis];
+    const double slope3 = normal[third] / normal[axis];
+    const Cells cells2(slope2, 1.0 / 16);
+    const Cells cells3(slope3, 1.0 / 16);
+    const Cells crossings(at[axis] + slope2 * at[second] + slope3 * at[third], 1.0 / 8);
+    for (std::uint64_t i = cells2.first(); i <= cells2.last(); ++i)
+      for (std::uint64_t j = cells3.first(); j <= cells3.last(); ++j)
+        for (std::uint64_t k = crossings.first(); k <= crossings.last(); ++k)
+          visit(((std::uint64_t(axis) << 16 | i) << 16 | j) << 16 | k);
+  }
+}
+
+/// The cells that hold several triangles, cell by cell. Cells are counted before in a table in which few of
+/// them share a place, so that few entries need be sorted.
+std::vector<PlaneEntry> shared_cells(const std::vector<Triangle>& triangles, const SceneSize& size) {
+  constexpr std::size_t kPlaces = std::size_t{1} << 23;
+  const auto place_of = [](std::uint64_t cell) { return (cell * 0x9e3779b97f4a7c15u) >> 41; };
+  static_assert(kPlaces == std::size_t{1} << (64 - 41));
+  const glm::dvec3 anchor = triangles[0].vertex[0];
+  std::vector<bool> is_thin(triangles.size());
+  std::vector<std::uint8_t> count(kPlaces);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    is_thin[i] = !(height_of(triangles[i]) >= size.least_height());
+    if (is_thin[i]) continue;
+    for_each_cell(triangles[i], anchor, size.extent, [&](std::uint64_t cell) {
+      std::uint8_t& so_far = count[place_of(cell)];
+      if (so_far < 2) ++so_far;
+    });
+  }
+  std::vector<PlaneEntry> entries;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (!is_thin[i])
+      for_each_cell(triangles[i], anchor, size.extent, [&](std::uint64_t cell) {
+        if (count[place_of(cell)] == 2) entries.push_back({cell, std::uint32_t(i)});
+      });
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+/// Sets of triangles that are joined one to another.
+class JoinedSets {
+ public:
+  explicit JoinedSets(std::size_t triangles) : parent_(triangles) {
+    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
+  }
+  std::uint32_t first_of(std::uint32_t triangle) {
+    while (parent_[triangle] != triangle) triangle = parent_[triangle] = parent_[parent_[triangle]];
+    return triangle;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = first_of(a);
+    b = first_of(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+struct CornerBox {
+  glm::dvec3 lower;
+  glm::dvec3 upper;
+
+  explicit CornerBox(const Triangle& triangle)
+      : lower(glm::min(glm::min(triangle.vertex[0], triangle.vertex[1]), triangle.vertex[2])),
+        upper(glm::max(glm::max(triangle.vertex[0], triangle.vertex[1]), triangle.vertex[2])) {}
+  void include(const CornerBox& other) {
+    lower = glm::min(lower, other.lower);
+    upper = glm::max(upper, other.upper);
+  }
+  bool meets(const CornerBox& other, double margin) const {
+    return glm::all(glm::lessThanEqual(lower, other.upper + margin)) &&
+           glm::all(glm::lessThanEqual(other.lower, upper + margin));
+  }
+};
+
+/// A tree of boxes over the triangles of a cell, from which triangles are taken as they are met. Each is met
+/// once, so that a thousand triangles on one another take no million steps.
+class OverlapTree {
+ public:
+  OverlapTree(const std::vector<Triangle>& all, const PlaneEntry* first, std::size_t count, const SceneSize& size)
+      : all_(all), size_(size) {
+    items_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) items_.push_back({first[i].triangle, CornerBox(all[first[i].triangle])});
+    nodes_.reserve(2 * count);
+    build(0, count);
+  }
+
+  /// Joins all that are connected by overlaps.
+  void join_all(JoinedSets& sets) {
+    std::vector<std::uint32_t> open;
+    while (nodes_[0].left_in > 0) {
+      open.assign(1, take_any(0));
+      while (!open.empty()) {
+        const std::uint32_t current = open.back();
+        open.pop_back();
+        const std::size_t old = open.size();
+        take_met(0, all_[current], CornerBox(all_[current]), open);
+        for (std::size_t i = old; i < open.size(); ++i) sets.join(current, open[i]);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostInLeaf = 4;
+  struct Item {
+    std::uint32_t triangle;
+    CornerBox bounds;
+    bool is_taken = false;
+  };
+  struct Node {
+    CornerBox bounds;
+    std::size_t first;
+    std::size_t end;
+    std::size_t left_in;     ///< items that are not taken
+    std::size_t second = 0;  ///< the second child; the first one follows its parent. 0 for a leaf
+  };
+
+  std::size_t build(std::size_t first, std::size_t end) {
+    CornerBox bounds = items_[first].bounds;
+    for (std::size_t i = first + 1; i < end; ++i) bounds.include(items_[i].bounds);
+    const std::size_t place = nodes_.size();
+    nodes_.push_back({bounds, first, end, end - first});
+    if (end - first <= kMostInLeaf) return place;
+    const glm::dvec3 size = bounds.upper - bounds.lower;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::size_t middle = first + (end - first) / 2;
+    const auto at = [&](std::size_t i) { return items_.begin() + std::ptrdiff_t(i); };
+    std::nth_element(at(first), at(middle), at(end), [axis](const Item& a, const Item& b) {
+      return a.bounds.lower[axis] + a.bounds.upper[axis] < b.bounds.lower[axis] + b.bounds.upper[axis];
+    });
+    build(first, middle);
+    const std::size_t second = build(middle, end);
+    nodes_[place].second = second;
+    return place;
+  }
+
+  std::uint32_t take_any(std::size_t place) {
+    Node& node = nodes_[place];
+    --node.left_in;
+    if (node.second != 0) return take_any(nodes_[place + 1].left_in > 0 ? place + 1 : node.second);
+    std::size_t i = node.first;
+    while (items_[i].is_taken) ++i;
+    items_[i].is_taken = true;
+    return items_[i].triangle;
+  }
+
+  /// @return the number of triangles taken
+  std::size_t take_met(std::size_t place, const Triangle& triangle, const CornerBox& bounds,
+                       std::vector<std::uint32_t>& met) {
+    Node& node = nodes_[place];
+    if (node.left_in == 0 || !node.bounds.meets(bounds, size_.plane_tolerance())) return 0;
+    std::size_t taken = 0;
+    if (node.second != 0) {
+      taken = take_met(place + 1, triangle, bounds, met) + take_met(node.second, triangle, bounds, met);
+    } else {
+      for (std::size_t i = node.first; i < node.end; ++i) {
+        Item& item = items_[i];
+        if (item.is_taken || !item.bounds.meets(bounds, size_.plane_tolerance()) ||
+            !coincide(triangle, all_[item.triangle], size_))
+          continue;
+        item.is_taken = true;
+        met.push_back(item.triangle);
+        ++taken;
+      }
+    }
+    node.left_in -= taken;
+    return taken;
+  }
+
+  const std::vector<Triangle>& all_;
+  const SceneSize& size_;
+  std::vector<Item> items_;
+  std::vector<Node> nodes_;
+};
+
+/// Numbers the sets of several triangles in the order of their first ones.
+CoincidentTriangles numbered(JoinedSets& sets, std::size_t triangles) {
+  CoincidentTriangles result;
+  result.group.assign(triangles, kNoGroup);
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const std::uint32_t first = sets.first_of(i);
+    if (first == i) continue;
+    if (result.group[first] == kNoGroup) {
+      result.group[first] = result.groups++;
+      ++result.triangles;
+    }
+    result.group[i] = result.group[first];
+    ++result.triangles;
+  }
+  return result;
+}
+
+}  // namespace
+
+CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles) {
+  JoinedSets sets(triangles.size());
+  if (triangles.size() < 2) return numbered(sets, triangles.size());
+  const SceneSize size = size_of(triangles);
+  const std::vector<PlaneEntry> entries = shared_cells(triangles, size);
+  for (std::size_t first = 0, end; first < entries.size(); first = end) {
+    end = first + 1;
+    while (end < entries.size() && entries[end].cell == entries[first].cell) ++end;
+    if (end - first > 1) OverlapTree(triangles, &entries[first], end - first, size).join_all(sets);
+  }
+  return numbered(sets, triangles.size());
+}
+
+void order_coincident_triangles(Scene& scene, const std::string& file) {
+  const CoincidentTriangles found = find_coincident_triangles(scene.triangles);
+  scene.coincident_triangles = found.triangles;
+  if (found.triangles == 0) return;
+  scene.notes.add("a triangle lies on another one in its plane: what faces the ray is seen, lights first, then what "
+                  "is listed first",
+                  file, found.triangles);
+  std::stable_partition(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
+    return scene.materials[std::size_t(triangle.material)].emission != glm::dvec3(0.0);
+  });
+}
+
+}  // namespace testbench

@@ -42,7 +42,9 @@ std::unique_ptr<RaySearch> make_search(const StageContext& context) {
 PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config,
                                          const Layers& layers) {
   return {
-      {machine, "load buffer", {config.load_buffers(), load_buffer_bytes(config, layers), !config.buffers_loads()}},
+      {machine,
+       "load buffer",
+       {config.load_buffers(), load_buffer_bytes(config, layers), !config.buffers_loads()}},
       {machine, "save buffer", {config.save_buffers(), save_buffer_bytes(config), !config.buffers_saves()}}};
 }
 

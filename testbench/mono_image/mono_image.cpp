@@ -224,7 +224,8 @@ std::vector<std::size_t> triangles_in_order(const Scene& scene, const TreeImage&
 
 void put_at(MonoImage& image, const path_tracer::LayeredTriangleRecord& record, std::size_t place) {
   if (image.layout.layers.any) {
-    put(image, cn::MonoPointer<path_tracer::LayeredTriangleRecord>{image.layout.triangles.address} + place, &record, 1);
+    put(image, cn::MonoPointer<path_tracer::LayeredTriangleRecord>{image.layout.triangles.address} + place,
+        &record, 1);
   } else {
     put(image, image.layout.triangles + place, &record.triangle, 1);
   }
@@ -242,15 +243,14 @@ void put_triangle(MonoImage& image, const Triangles& triangles, std::size_t tria
 /// ray, as far as they share the plane, and the light's own triangles are enough for a run.
 bool shares_plane(const SceneLayers& layers, const std::vector<std::size_t>& of_light) {
   return layers.plane_of(of_light[0]) != kNoPlane &&
-         std::all_of(of_light.begin(), of_light.end(), [&](std::size_t i) {
-           return layers.plane_of(i) == layers.plane_of(of_light[0]);
-         });
+         std::all_of(of_light.begin(), of_light.end(),
+                     [&](std::size_t i) { return layers.plane_of(i) == layers.plane_of(of_light[0]); });
 }
 
-/// Writes, behind the triangles, a run of records for each light: all triangles of the light's face, or of the
-/// light itself where they share a plane. A shadow ray that hits one of them can stop at any nearer hit. If
-/// there are too many triangles, the run holds records that no ray hits. Shadow rays to that light then seem
-/// to miss it and search for the nearest hit as segments do.
+/// Writes, behind the triangles, a run of records for each light: all triangles of the light's face, or of
+/// the light itself where they share a plane. A shadow ray that hits one of them can stop at any nearer hit.
+/// If there are too many triangles, the run holds records that no ray hits. Shadow rays to that light then
+/// seem to miss it and search for the nearest hit as segments do.
 void put_light_runs(MonoImage& image, const Triangles& all, const Lights& lights) {
   const std::vector<std::int32_t>& faces = all.faces;
   std::unordered_map<std::int32_t, std::vector<std::size_t>> of_face;
@@ -282,9 +282,8 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
       light_of[triangle] = static_cast<std::int32_t>(light);
   for (std::size_t i = 0; i < triangles.count(); ++i) {
     const Triangle& triangle = triangles.scene.triangles[i];
-    const SurfaceRecord record =
-        surface_record(triangle, triangles.scene.materials[std::size_t(triangle.material)],
-                       triangles.faces[i], light_of[i]);
+    const SurfaceRecord record = surface_record(
+        triangle, triangles.scene.materials[std::size_t(triangle.material)], triangles.faces[i], light_of[i]);
     put(image, image.layout.surfaces + i, &record, 1);
   }
 }

@@ -23,8 +23,8 @@ SharedPlane plane_through(const std::vector<glm::dvec3>& vertices, const glm::dv
   long double least = std::numeric_limits<long double>::infinity();
   long double most = -least;
   for (const glm::dvec3& vertex : vertices) {
-    const cn::vec3<long double> from_anchor{(long double)vertex.x - anchor.x, (long double)vertex.y - anchor.y,
-                                            (long double)vertex.z - anchor.z};
+    const cn::vec3<long double> from_anchor{
+        (long double)vertex.x - anchor.x, (long double)vertex.y - anchor.y, (long double)vertex.z - anchor.z};
     const long double offset = cn::dot(normal, from_anchor);
     least = std::min(least, offset);
     most = std::max(most, offset);
@@ -44,7 +44,8 @@ bool lies_in(const SharedPlane& plane, const Vector& anchor, const Triangle& tri
 }
 
 /// Triangles by a number of each of them that is below `numbers`; those with a negative one are left out.
-std::vector<std::vector<std::size_t>> by_number(const std::vector<std::int32_t>& number_of, std::size_t numbers) {
+std::vector<std::vector<std::size_t>> by_number(const std::vector<std::int32_t>& number_of,
+                                                std::size_t numbers) {
   std::vector<std::vector<std::size_t>> triangles(numbers);
   for (std::size_t i = 0; i < number_of.size(); ++i)
     if (number_of[i] >= 0) triangles[std::size_t(number_of[i])].push_back(i);
@@ -60,8 +61,8 @@ SceneLayers::SceneLayers(const std::vector<Triangle>& triangles, const Coinciden
   const double tolerance = size_of(triangles).plane_tolerance();
   layers_ = {true, as_record(anchor)};
   plane_of_.assign(triangles.size(), kNoPlane);
-  // First a plane for each face with coincident triangles, then one for each group that is not in such a plane
-  // as a whole: its face is bent by more than rounding.
+  // First a plane for each face with coincident triangles, then one for each group that is not in such a
+  // plane as a whole: its face is bent by more than rounding.
   const auto add_planes = [&](const std::vector<std::vector<std::size_t>>& sets) {
     for (const std::vector<std::size_t>& set : sets) {
       std::vector<glm::dvec3> vertices;

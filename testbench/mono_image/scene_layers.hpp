@@ -11,9 +11,9 @@ namespace testbench {
 
 inline constexpr std::int32_t kNoPlane = -1;
 
-/// The planes that triangles of a layered scene share. Of a face with coincident triangles, all triangles that
-/// lie in one plane, up to rounding (SceneSize::plane_tolerance()), share it. A triangle of the face that lies
-/// farther away keeps a plane of its own.
+/// The planes that triangles of a layered scene share. Of a face with coincident triangles, all triangles
+/// that lie in one plane, up to rounding (SceneSize::plane_tolerance()), share it. A triangle of the face
+/// that lies farther away keeps a plane of its own.
 class SceneLayers {
  public:
   SceneLayers(const std::vector<Triangle>& triangles, const CoincidentTriangles& coincident,

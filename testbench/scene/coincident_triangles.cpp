@@ -21,8 +21,13 @@ struct PlaneEntry {
   }
 };
 
-/// Cells that a number lies in: its own and, near the upper border, the next one. So two numbers that differ by
-/// at most that share of a cell have a cell in common.
+/// The axis of a cell, which is that of its planes' largest components (for_each_cell()).
+int axis_of(std::uint64_t cell) {
+  return int(cell >> 48);
+}
+
+/// Cells that a number lies in: its own and, near the upper border, the next one. So two numbers that differ
+/// by at most that share of a cell have a cell in common.
 class Cells {
  public:
   Cells(double number, double near_border) {
@@ -68,31 +73,32 @@ void for_each_cell(const Triangle& triangle, const glm::dvec3& anchor, double ex
   }
 }
 
-/// The cells that hold several triangles, cell by cell. Cells are counted before in a table in which few of
-/// them share a place, so that few entries need be sorted.
-std::vector<PlaneEntry> shared_cells(const std::vector<Triangle>& triangles, const SceneSize& size) {
-  constexpr std::size_t kPlaces = std::size_t{1} << 23;
-  const auto place_of = [](std::uint64_t cell) { return (cell * 0x9e3779b97f4a7c15u) >> 41; };
-  static_assert(kPlaces == std::size_t{1} << (64 - 41));
+/// The entries of all triangles that are not too thin, cell by cell: first by a number of few bits that the
+/// cell has, then by the cell. That takes half as long as to sort them all.
+std::vector<PlaneEntry> entries_by_cell(const std::vector<Triangle>& triangles, const SceneSize& size) {
+  constexpr int kBits = 20;
+  const auto place_of = [](std::uint64_t cell) { return (cell * 0x9e3779b97f4a7c15u) >> (64 - kBits); };
   const glm::dvec3 anchor = triangles[0].vertex[0];
-  std::vector<bool> is_thin(triangles.size());
-  std::vector<std::uint8_t> count(kPlaces);
+  std::vector<PlaneEntry> entries;
+  entries.reserve(triangles.size() + triangles.size() / 2);
+  std::vector<std::uint32_t> end((std::size_t{1} << kBits) + 1);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    is_thin[i] = !(height_of(triangles[i]) >= size.least_height());
-    if (is_thin[i]) continue;
+    if (!(height_of(triangles[i]) >= size.least_height())) continue;
     for_each_cell(triangles[i], anchor, size.extent, [&](std::uint64_t cell) {
-      std::uint8_t& so_far = count[place_of(cell)];
-      if (so_far < 2) ++so_far;
+      entries.push_back({cell, std::uint32_t(i)});
+      ++end[place_of(cell) + 1];
     });
   }
-  std::vector<PlaneEntry> entries;
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (!is_thin[i])
-      for_each_cell(triangles[i], anchor, size.extent, [&](std::uint64_t cell) {
-        if (count[place_of(cell)] == 2) entries.push_back({cell, std::uint32_t(i)});
-      });
-  std::sort(entries.begin(), entries.end());
-  return entries;
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<PlaneEntry> ordered(entries.size());
+  for (const PlaneEntry& entry : entries) ordered[end[place_of(entry.cell)]++] = entry;
+  std::size_t first = 0;
+  for (std::size_t place = 0; place + 1 < end.size(); ++place) {
+    if (end[place] - first > 1)
+      std::sort(ordered.begin() + std::ptrdiff_t(first), ordered.begin() + std::ptrdiff_t(end[place]));
+    first = end[place];
+  }
+  return ordered;
 }
 
 /// Sets of triangles that are joined one to another.
@@ -136,25 +142,29 @@ struct CornerBox {
 /// once, so that a thousand triangles on one another take no million steps.
 class OverlapTree {
  public:
-  OverlapTree(const std::vector<Triangle>& all, const PlaneEntry* first, std::size_t count, const SceneSize& size)
+  OverlapTree(const std::vector<Triangle>& all, const PlaneEntry* first, std::size_t count,
+              const SceneSize& size)
       : all_(all), size_(size) {
+    std::vector<Centre> centres;
+    centres.reserve(count);
+    for (std::size_t i = 0; i < count; ++i)
+      centres.emplace_back(all[first[i].triangle], first[i].triangle, all[0].vertex[0], size.extent);
     items_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) items_.push_back({first[i].triangle, CornerBox(all[first[i].triangle])});
     nodes_.reserve(2 * count);
-    build(0, count);
+    build(axis_of(first->cell), centres, 0, count);
   }
 
   /// Joins all that are connected by overlaps.
   void join_all(JoinedSets& sets) {
-    std::vector<std::uint32_t> open;
+    std::vector<const Item*> open;
     while (nodes_[0].left_in > 0) {
-      open.assign(1, take_any(0));
+      open.assign(1, &take_any(0));
       while (!open.empty()) {
-        const std::uint32_t current = open.back();
+        const Item& current = *open.back();
         open.pop_back();
         const std::size_t old = open.size();
-        take_met(0, all_[current], CornerBox(all_[current]), open);
-        for (std::size_t i = old; i < open.size(); ++i) sets.join(current, open[i]);
+        take_met(0, current, open);
+        for (std::size_t i = old; i < open.size(); ++i) sets.join(current.triangle, open[i]->triangle);
       }
     }
   }
@@ -164,6 +174,7 @@ class OverlapTree {
   struct Item {
     std::uint32_t triangle;
     CornerBox bounds;
+    Silhouette silhouette;
     bool is_taken = false;
   };
   struct Node {
@@ -174,51 +185,85 @@ class OverlapTree {
     std::size_t second = 0;  ///< the second child; the first one follows its parent. 0 for a leaf
   };
 
-  std::size_t build(std::size_t first, std::size_t end) {
-    CornerBox bounds = items_[first].bounds;
-    for (std::size_t i = first + 1; i < end; ++i) bounds.include(items_[i].bounds);
+  /// Where a triangle is, in a few bytes that are moved fast.
+  struct Centre {
+    std::array<float, 3> at;
+    std::uint32_t triangle;
+
+    Centre(const Triangle& of, std::uint32_t number, const glm::dvec3& origin, double extent)
+        : triangle(number) {
+      const glm::dvec3 sum =
+          ((of.vertex[0] - origin) + (of.vertex[1] - origin) + (of.vertex[2] - origin)) / extent;
+      at = {float(sum.x), float(sum.y), float(sum.z)};
+    }
+  };
+
+  /// Splits the centres in half along the axis in which they extend farthest. @return the node's place
+  std::size_t build(int axis, std::vector<Centre>& centres, std::size_t first, std::size_t end) {
     const std::size_t place = nodes_.size();
-    nodes_.push_back({bounds, first, end, end - first});
-    if (end - first <= kMostInLeaf) return place;
-    const glm::dvec3 size = bounds.upper - bounds.lower;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    nodes_.push_back({CornerBox(all_[centres[first].triangle]), first, end, end - first});
+    if (end - first <= kMostInLeaf) {
+      for (std::size_t i = first; i < end; ++i) {
+        const Triangle& triangle = all_[centres[i].triangle];
+        items_.push_back(
+            {centres[i].triangle, CornerBox(triangle), seen_along(axis, triangle, all_[0].vertex[0])});
+        nodes_[place].bounds.include(items_.back().bounds);
+      }
+      return place;
+    }
+    const std::size_t longest = longest_axis(centres, first, end);
     const std::size_t middle = first + (end - first) / 2;
-    const auto at = [&](std::size_t i) { return items_.begin() + std::ptrdiff_t(i); };
-    std::nth_element(at(first), at(middle), at(end), [axis](const Item& a, const Item& b) {
-      return a.bounds.lower[axis] + a.bounds.upper[axis] < b.bounds.lower[axis] + b.bounds.upper[axis];
-    });
-    build(first, middle);
-    const std::size_t second = build(middle, end);
+    const auto at = [&](std::size_t i) { return centres.begin() + std::ptrdiff_t(i); };
+    std::nth_element(at(first), at(middle), at(end),
+                     [longest](const Centre& a, const Centre& b) { return a.at[longest] < b.at[longest]; });
+    build(axis, centres, first, middle);
+    const std::size_t second = build(axis, centres, middle, end);
     nodes_[place].second = second;
+    nodes_[place].bounds.include(nodes_[place + 1].bounds);
+    nodes_[place].bounds.include(nodes_[second].bounds);
     return place;
   }
 
-  std::uint32_t take_any(std::size_t place) {
+  static std::size_t longest_axis(const std::vector<Centre>& centres, std::size_t first, std::size_t end) {
+    std::array<float, 3> lower = centres[first].at;
+    std::array<float, 3> upper = lower;
+    for (std::size_t i = first + 1; i < end; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        lower[axis] = std::min(lower[axis], centres[i].at[axis]);
+        upper[axis] = std::max(upper[axis], centres[i].at[axis]);
+      }
+    std::size_t longest = 0;
+    for (std::size_t axis = 1; axis < 3; ++axis)
+      if (upper[axis] - lower[axis] > upper[longest] - lower[longest]) longest = axis;
+    return longest;
+  }
+
+  const Item& take_any(std::size_t place) {
     Node& node = nodes_[place];
     --node.left_in;
     if (node.second != 0) return take_any(nodes_[place + 1].left_in > 0 ? place + 1 : node.second);
     std::size_t i = node.first;
     while (items_[i].is_taken) ++i;
     items_[i].is_taken = true;
-    return items_[i].triangle;
+    return items_[i];
   }
 
   /// @return the number of triangles taken
-  std::size_t take_met(std::size_t place, const Triangle& triangle, const CornerBox& bounds,
-                       std::vector<std::uint32_t>& met) {
+  std::size_t take_met(std::size_t place, const Item& current, std::vector<const Item*>& met) {
     Node& node = nodes_[place];
-    if (node.left_in == 0 || !node.bounds.meets(bounds, size_.plane_tolerance())) return 0;
+    if (node.left_in == 0 || !node.bounds.meets(current.bounds, size_.plane_tolerance())) return 0;
     std::size_t taken = 0;
     if (node.second != 0) {
-      taken = take_met(place + 1, triangle, bounds, met) + take_met(node.second, triangle, bounds, met);
+      taken = take_met(place + 1, current, met) + take_met(node.second, current, met);
     } else {
       for (std::size_t i = node.first; i < node.end; ++i) {
         Item& item = items_[i];
-        if (item.is_taken || !item.bounds.meets(bounds, size_.plane_tolerance()) ||
-            !coincide(triangle, all_[item.triangle], size_))
+        if (item.is_taken || !item.bounds.meets(current.bounds, size_.plane_tolerance()) ||
+            !overlap(item.silhouette, current.silhouette, size_) ||
+            !lie_in_one_plane(all_[item.triangle], all_[current.triangle], size_))
           continue;
         item.is_taken = true;
-        met.push_back(item.triangle);
+        met.push_back(&item);
         ++taken;
       }
     }
@@ -231,6 +276,18 @@ class OverlapTree {
   std::vector<Item> items_;
   std::vector<Node> nodes_;
 };
+
+/// Joins two triangles, which are alone in their cell, if they coincide: the most frequent case by far.
+void join_pair(const std::vector<Triangle>& triangles, const PlaneEntry& a, const PlaneEntry& b,
+               const SceneSize& size, JoinedSets& sets) {
+  const Triangle& first = triangles[a.triangle];
+  const Triangle& second = triangles[b.triangle];
+  const int axis = axis_of(a.cell);
+  const glm::dvec3& origin = triangles[0].vertex[0];
+  if (overlap(seen_along(axis, first, origin), seen_along(axis, second, origin), size) &&
+      lie_in_one_plane(first, second, size))
+    sets.join(a.triangle, b.triangle);
+}
 
 /// Numbers the sets of several triangles in the order of their first ones.
 CoincidentTriangles numbered(JoinedSets& sets, std::size_t triangles) {
@@ -255,11 +312,15 @@ CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& trian
   JoinedSets sets(triangles.size());
   if (triangles.size() < 2) return numbered(sets, triangles.size());
   const SceneSize size = size_of(triangles);
-  const std::vector<PlaneEntry> entries = shared_cells(triangles, size);
+  const std::vector<PlaneEntry> entries = entries_by_cell(triangles, size);
   for (std::size_t first = 0, end; first < entries.size(); first = end) {
     end = first + 1;
     while (end < entries.size() && entries[end].cell == entries[first].cell) ++end;
-    if (end - first > 1) OverlapTree(triangles, &entries[first], end - first, size).join_all(sets);
+    if (end - first == 2) {
+      join_pair(triangles, entries[first], entries[first + 1], size, sets);
+    } else if (end - first > 2) {
+      OverlapTree(triangles, &entries[first], end - first, size).join_all(sets);
+    }
   }
   return numbered(sets, triangles.size());
 }
@@ -268,9 +329,10 @@ void order_coincident_triangles(Scene& scene, const std::string& file) {
   const CoincidentTriangles found = find_coincident_triangles(scene.triangles);
   scene.coincident_triangles = found.triangles;
   if (found.triangles == 0) return;
-  scene.notes.add("a triangle lies on another one in its plane: what faces the ray is seen, lights first, then what "
-                  "is listed first",
-                  file, found.triangles);
+  scene.notes.add(
+      "a triangle lies on another one in its plane: what faces the ray is seen, lights first, then what "
+      "is listed first",
+      file, found.triangles);
   std::stable_partition(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
     return scene.materials[std::size_t(triangle.material)].emission != glm::dvec3(0.0);
   });

@@ -1,13 +1,10 @@
 #include "testbench/scene/triangle_overlap.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace testbench {
 namespace {
-
-using Corners = std::array<glm::dvec2, 3>;
 
 glm::dvec3 edge_normal(const Triangle& triangle) {
   return glm::cross(triangle.vertex[1] - triangle.vertex[0], triangle.vertex[2] - triangle.vertex[0]);
@@ -18,29 +15,15 @@ int largest_axis(const glm::dvec3& v) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-/// The triangle as seen along an axis, counter-clockwise.
-Corners seen_along(int axis, const Triangle& triangle, const glm::dvec3& origin) {
-  Corners corners;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 at = triangle.vertex[i] - origin;
-    corners[i] = {at[(axis + 1) % 3], at[(axis + 2) % 3]};
-  }
-  const glm::dvec2 a = corners[1] - corners[0];
-  const glm::dvec2 b = corners[2] - corners[0];
-  if (a.x * b.y < a.y * b.x) std::swap(corners[1], corners[2]);
-  return corners;
-}
-
 /// Whether the line along an edge of `a` has all of `b` on its other side, or at most `tolerance` beyond.
-bool edge_parts(const Corners& a, const Corners& b, double tolerance) {
+bool edge_parts(const Silhouette& a, const Silhouette& b, double tolerance) {
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec2 along = a[(i + 1) % 3] - a[i];
-    const double most = tolerance * glm::length(along);
-    if (std::all_of(b.begin(), b.end(), [&](const glm::dvec2& corner) {
-          const glm::dvec2 to = corner - a[i];
-          return along.x * to.y - along.y * to.x <= most;
-        }))
-      return true;
+    const auto beyond = [&](const glm::dvec2& corner) {
+      const glm::dvec2 to = corner - a[i];
+      return along.x * to.y - along.y * to.x;
+    };
+    if (std::max({beyond(b[0]), beyond(b[1]), beyond(b[2])}) <= tolerance * glm::length(along)) return true;
   }
   return false;
 }
@@ -77,9 +60,7 @@ FittedPlane fit_plane(const std::vector<glm::dvec3>& points) {
   const glm::dvec3 second = farthest(points, distance_from(first));
   const double length = glm::length(second - first);
   const glm::dvec3 along = length > 0 ? (second - first) / length : glm::dvec3(1.0, 0.0, 0.0);
-  const auto across = [&](const glm::dvec3& point) {
-    return glm::length(glm::cross(along, point - first));
-  };
+  const auto across = [&](const glm::dvec3& point) { return glm::length(glm::cross(along, point - first)); };
   const glm::dvec3 third = farthest(points, across);
   const glm::dvec3 normal = glm::cross(along, third - first);
   return {first, normal / glm::length(normal)};
@@ -92,18 +73,37 @@ double height_of(const Triangle& triangle) {
   return longest > 0 ? glm::length(edge_normal(triangle) / longest) : 0.0;
 }
 
-bool coincide(const Triangle& a, const Triangle& b, const SceneSize& size) {
-  const double tolerance = size.plane_tolerance();
-  const int axis = largest_axis(edge_normal(height_of(a) < height_of(b) ? b : a));
-  const Corners seen_a = seen_along(axis, a, a.vertex[0]);
-  const Corners seen_b = seen_along(axis, b, a.vertex[0]);
-  if (edge_parts(seen_a, seen_b, 4 * tolerance) || edge_parts(seen_b, seen_a, 4 * tolerance)) return false;
+Silhouette seen_along(int axis, const Triangle& triangle, const glm::dvec3& origin) {
+  Silhouette corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 at = triangle.vertex[i] - origin;
+    corners[i] = {at[(axis + 1) % 3], at[(axis + 2) % 3]};
+  }
+  const glm::dvec2 a = corners[1] - corners[0];
+  const glm::dvec2 b = corners[2] - corners[0];
+  if (a.x * b.y < a.y * b.x) std::swap(corners[1], corners[2]);
+  return corners;
+}
+
+bool overlap(const Silhouette& a, const Silhouette& b, const SceneSize& size) {
+  const double touching = 4 * size.plane_tolerance();
+  return !edge_parts(a, b, touching) && !edge_parts(b, a, touching);
+}
+
+bool lie_in_one_plane(const Triangle& a, const Triangle& b, const SceneSize& size) {
   const std::vector<glm::dvec3> points{a.vertex[0], a.vertex[1], a.vertex[2],
                                        b.vertex[0], b.vertex[1], b.vertex[2]};
   const FittedPlane plane = fit_plane(points);
   return std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
-    return std::abs(glm::dot(plane.normal, point - plane.point)) <= tolerance;
+    return std::abs(glm::dot(plane.normal, point - plane.point)) <= size.plane_tolerance();
   });
+}
+
+bool coincide(const Triangle& a, const Triangle& b, const SceneSize& size) {
+  const int axis = largest_axis(edge_normal(height_of(a) < height_of(b) ? b : a));
+  const glm::dvec3& origin = a.vertex[0];
+  return overlap(seen_along(axis, a, origin), seen_along(axis, b, origin), size) &&
+         lie_in_one_plane(a, b, size);
 }
 
 }  // namespace testbench

@@ -7,12 +7,12 @@
 /// equal to the last bit on every ray.
 ///
 /// With e = 2^-53 and the other names of triangle_record.hpp, the rounding of a distance is that of the
-/// offset (1 e), of the origin relative to the anchor (1 e), of a dot product (3 e) and of a difference (2 e),
-/// each of reach |back|, and of the determinant (3 e reach |back|): less than the 20 that are allowed for
-/// there. The area's ratio adds two roundings to the 36 of a hit within the triangle, and edges that were laid
-/// into the plane (lay_into()) two more; together they are below 64. What remains is the vertex, off the plane
-/// by its rounding d: it moves the triangle by less than d |direction| |edge1| |edge2| / s along the plane,
-/// and the hit by as much along the ray. So is_certain() allows for 4 d besides.
+/// offset (1 e), of the origin relative to the anchor (1 e), of a dot product (3 e) and of a difference (2
+/// e), each of reach |back|, and of the determinant (3 e reach |back|): less than the 20 that are allowed for
+/// there. The area's ratio adds two roundings to the 36 of a hit within the triangle, and edges that were
+/// laid into the plane (lay_into()) two more; together they are below 64. What remains is the vertex, off the
+/// plane by its rounding d: it moves the triangle by less than d |direction| |edge1| |edge2| / s along the
+/// plane, and the hit by as much along the ray. So is_certain() allows for 4 d besides.
 namespace path_tracer {
 
 /// The plane normal . (point - anchor) = offset.
@@ -56,7 +56,8 @@ inline double distance_from(const SharedPlane& plane, const vec3<double>& anchor
 
 /// Moves a triangle into the plane, across it. Its edges are laid there before they are rounded, so that
 /// their rounding is small beside themselves.
-inline TriangleShape lay_into(const SharedPlane& plane, const vec3<double>& anchor, const vec3<double> (&vertex)[3]) {
+inline TriangleShape lay_into(const SharedPlane& plane, const vec3<double>& anchor,
+                              const vec3<double> (&vertex)[3]) {
   using namespace layered_detail;
   const auto laid = [&](const vec3<double>& point) {
     const Long3 wide = widened(point);
@@ -84,12 +85,12 @@ inline LayeredTriangleRecord layered_triangle_record(const TriangleShape& shape,
   const double deviation = 4 * distance_from(plane, anchor, shape.vertex);
   const double scale = record_scale(shape.vertex, shape.edge1, shape.edge2, place.reach, deviation);
   const Long3 normal = widened(plane.normal);
-  const long double along =
-      cn::dot(back_of(shape.edge1, shape.edge2), normal) / cn::dot(normal, normal) * static_cast<long double>(scale);
+  const long double along = cn::dot(back_of(shape.edge1, shape.edge2), normal) / cn::dot(normal, normal) *
+                            static_cast<long double>(scale);
   const double factor = std::copysign(std::scalbn(1.0, std::ilogb(along)), double(along));
   LayeredTriangleRecord record;
-  record.triangle = {shape.vertex, shape.edge1 * scale, shape.edge2 * scale, plane.normal * factor,
-                     place.face, place.number};
+  record.triangle = {shape.vertex,          shape.edge1 * scale, shape.edge2 * scale,
+                     plane.normal * factor, place.face,          place.number};
   record.plane_offset = plane.offset * factor;
   record.area_ratio = double(along / factor);
   return record;

@@ -134,7 +134,8 @@ mask meets_padded_box(const RayOperands& ray, double reach, const Crossing& cros
   const Direction3 edge1 = as_poly(triangle.edge1);
   const Direction3 edge2 = as_poly(triangle.edge2);
   const Direction3 back = as_poly(triangle.back);
-  const poly<double> squared = ray.is_in_layers ? dot(back, back) * layered(triangle).area_ratio : dot(back, back);
+  const poly<double> squared =
+      ray.is_in_layers ? dot(back, back) * layered(triangle).area_ratio : dot(back, back);
   const poly<double> ratio = dot(cross(edge2, edge1), back) / squared;
   const poly<double> inverse_scale = cn::inverse_power_of_two(cn::nearest_power_of_two(ratio));
   const PaddedBox<poly<double>> box =
@@ -200,8 +201,8 @@ mask search_fast(const RayOperands& ray, const Triangles& triangles, Found& near
 /// Whether rounding has not moved the hit out of the triangle's padded box. Layered scenes have many ties, so
 /// there the box is tested only if a PE needs it.
 template <class Triangle>
-mask is_in_padded_box(const RayOperands& ray, double reach, const Crossing& crossing, const Triangle& triangle,
-                      const mask& candidate) {
+mask is_in_padded_box(const RayOperands& ray, double reach, const Crossing& crossing,
+                      const Triangle& triangle, const mask& candidate) {
   const mask certain = is_certain(crossing.determinant, ray);
   if (!ray.is_in_layers) return certain | meets_padded_box(ray, reach, crossing, triangle);
   mask in_box = certain;

@@ -70,7 +70,7 @@ struct TraverseArguments {
   PolyPointer<TriangleRecord> leaf;
   PolyField<std::int32_t> treelet;
   TreeInSram tree;
-  double reach = 0;                       ///< of the scene (triangle_record.hpp)
+  double reach = 0;  ///< of the scene (triangle_record.hpp)
   Layers layers;
   const LaneMask* loaded_leaf = nullptr;  ///< nullptr if no PE has a leaf
   LaneMask* alive = nullptr;

@@ -39,10 +39,9 @@ inline void test_leaf(const TraverseArguments& arguments, const RayOperands& ray
   nearest.face.assign_all_lanes(light_face);
   const poly<std::int32_t> there =
       cn::select(cn::recall(*arguments.loaded_leaf), state.leaf_count, poly<std::int32_t>(0));
-  search(
-      ray, arguments.reach,
-      PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), arguments.layers.any, there},
-      nearest);
+  search(ray, arguments.reach,
+         PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), arguments.layers.any, there},
+         nearest);
   cn::poly_if(there > 0, [&] {
     const mask is_missed = nearest.number < 0;
     arguments.record.set(&TraversalRecord::light_face,

@@ -23,8 +23,7 @@ PrefilterTriangle prefilter_triangle(const TriangleRecord& triangle, const vec3<
   const double largest = std::max(largest_component(triangle.edge1), largest_component(triangle.edge2));
   const int edge_exponent = largest > 0 ? -std::ilogb(largest) - 1 : 0;
   return {narrow(triangle.vertex - anchor, unit_exponent), narrow(triangle.edge1 * -1.0, edge_exponent),
-          narrow(triangle.edge2, edge_exponent), narrow(back, edge_exponent + unit_exponent),
-          triangle.face};
+          narrow(triangle.edge2, edge_exponent), narrow(back, edge_exponent + unit_exponent), triangle.face};
 }
 
 }  // namespace

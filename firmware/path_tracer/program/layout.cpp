@@ -68,9 +68,11 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
   const auto triangles = std::uint64_t(scene.triangles + behind_triangles);
   layout.layers.any = scene.has_layers;
-  layout.triangles = scene.has_layers
-                         ? cn::MonoPointer<TriangleRecord>{memory.take<LayeredTriangleRecord>("triangles", triangles).address}
-                         : memory.take<TriangleRecord>("triangles", triangles);
+  layout.triangles =
+      scene.has_layers
+          ? cn::MonoPointer<TriangleRecord>{memory.take<LayeredTriangleRecord>("triangles", triangles)
+                                                .address}
+          : memory.take<TriangleRecord>("triangles", triangles);
   layout.surfaces = memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles));
   layout.lights = memory.take<LightRecord>("lights", std::uint64_t(scene.lights));
   layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(scene.lights));

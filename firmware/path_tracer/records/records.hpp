@@ -24,8 +24,8 @@ struct CameraRecord {
 };
 
 /// A triangle for intersection (triangle.hpp); made by triangle_record(). Triangles that share an edge or lie
-/// on one another in one plane share a face. A ray that leaves a face ignores it, so no distance threshold is needed to keep a surface
-/// from shadowing itself.
+/// on one another in one plane share a face. A ray that leaves a face ignores it, so no distance threshold is
+/// needed to keep a surface from shadowing itself.
 struct TriangleRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};  ///< edges and `back` are scaled by one power of two, see triangle_record()

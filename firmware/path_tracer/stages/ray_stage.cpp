@@ -17,8 +17,7 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.triangle_count = layout.triangle_count;
   arguments.triangles = read_triangles(context_.machine, layout, 0, arguments.triangle_count);
   if (prefilter_.triangles.empty())
-    prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, layout.reach,
-                                layout.layers);
+    prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, layout.reach, layout.layers);
   arguments.prefilter = &prefilter_;
   arguments.reach = layout.reach;
   arguments.layers = layout.layers;

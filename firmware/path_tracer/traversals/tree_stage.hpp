@@ -38,9 +38,7 @@ class TreeStage : public Stage {
     int treelet_offset;
   };
   Loads loads(std::uint64_t step) const;
-  int leaf_bytes() const {
-    return tree_.tree.shape.leaf_records() * context_.layout.layers.record_bytes();
-  }
+  int leaf_bytes() const { return tree_.tree.shape.leaf_records() * context_.layout.layers.record_bytes(); }
 
   /// Returns the PEs with a ray in a block of the ray queue.
   LaneMask packed_rays(int block) const;

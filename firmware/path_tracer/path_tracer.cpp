@@ -11,14 +11,14 @@ namespace {
 /// Manual 3.1, p. 163).
 constexpr int kStackBytes = 1024;
 
-int load_buffer_bytes(const ProgramConfig& config) {
+int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
   return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
-                   config.uses_tree() ? TreeStage::load_bytes(config.tree) : 0});
+                   config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  return std::max({RayStage::save_bytes(config), IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
-                   config.uses_tree() ? TreeStage::save_bytes(config) : 0});
+  return std::max({RayStage::save_bytes(config), IntersectionStage::save_bytes(config),
+                   PathStage::save_bytes(config), config.uses_tree() ? TreeStage::save_bytes(config) : 0});
 }
 
 ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
@@ -40,9 +40,12 @@ std::unique_ptr<RaySearch> make_search(const StageContext& context) {
 
 }  // namespace
 
-PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config) {
+PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config,
+                                         const Layers& layers) {
   return {
-      {machine, "load buffer", {config.load_buffers(), load_buffer_bytes(config), !config.buffers_loads()}},
+      {machine,
+       "load buffer",
+       {config.load_buffers(), load_buffer_bytes(config, layers), !config.buffers_loads()}},
       {machine, "save buffer", {config.save_buffers(), save_buffer_bytes(config), !config.buffers_saves()}}};
 }
 
@@ -60,7 +63,7 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       config_(built_for(layout, config)),
       layout_(layout),
       bins_(make_bins(machine.poly_memory(), config_.bin_blocks)),
-      rings_(make_rings(machine, config_)),
+      rings_(make_rings(machine, config_, layout.layers)),
       radiance_rings_(make_radiance_rings(machine, config_)),
       search_(make_search(context(rings_))),
       intersection_stage_(context(rings_), search_->rays()),

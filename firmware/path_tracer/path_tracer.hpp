@@ -46,7 +46,7 @@ class PathTracer {
   void begin_pass();
   void plan_after_search();
   void report_fill(int block);
-  static Rings make_rings(cn::Machine& machine, const ProgramConfig& config);
+  static Rings make_rings(cn::Machine& machine, const ProgramConfig& config, const Layers& layers);
   static Rings make_radiance_rings(cn::Machine& machine, const ProgramConfig& config);
   StageContext context(Rings& rings) {
     return {machine_, kernels_, config_, layout_, rings.loads, rings.saves, bins_, counts_};

@@ -66,7 +66,7 @@ RenderRequest RenderCommand::make_request() const {
 
 std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& of) const {
   of.program = built_for(loaded, of.program);
-  return choose_tree(loaded.triangles.size(), of.chip, firmware.given(), of.program);
+  return choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of.program);
 }
 
 void RenderCommand::write_image(const Film& film,

@@ -32,7 +32,7 @@ bool is_kept(const std::string& key) {
 FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
   RenderOptions options = run.options;
   options.program = built_for(scene, options.program);
-  choose_tree(scene.triangles.size(), options.chip, run.given, options.program);
+  choose_tree(TriangleCount(scene), options.chip, run.given, options.program);
   const RenderResult result = render_on_chip(scene, options);
   FlatStatistics kept;
   for (auto& value : flatten(render_statistics({run.scene, options, false}, result)))

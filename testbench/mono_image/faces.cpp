@@ -114,7 +114,10 @@ glm::dvec3 area_normal(const Triangle& triangle) {
   return glm::cross(triangle.vertex[1] - triangle.vertex[0], triangle.vertex[2] - triangle.vertex[0]);
 }
 
-std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles) {
+namespace {
+
+/// Numbers what shared edges connect.
+std::vector<std::int32_t> number_by_edges(const std::vector<Triangle>& triangles) {
   const Edges edges(triangles);
   std::vector<std::int32_t> faces(triangles.size(), path_tracer::kNoFace);
   std::vector<std::int32_t> searched_for(edges.groups(), path_tracer::kNoFace);
@@ -144,6 +147,40 @@ std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles) {
     ++next_face;
   }
   return faces;
+}
+
+/// Gives all faces with triangles of one group the lowest of their numbers.
+void join_by_groups(const CoincidentTriangles& coincident, std::vector<std::int32_t>& faces) {
+  std::vector<std::int32_t> joined(faces.size());
+  std::iota(joined.begin(), joined.end(), std::int32_t{0});
+  const auto lowest = [&joined](std::int32_t face) {
+    while (joined[std::size_t(face)] != face)
+      face = joined[std::size_t(face)] = joined[std::size_t(joined[std::size_t(face)])];
+    return face;
+  };
+  std::vector<std::int32_t> face_of_group(std::size_t(coincident.groups), path_tracer::kNoFace);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (coincident.group[i] == kNoGroup) continue;
+    std::int32_t& of_group = face_of_group[std::size_t(coincident.group[i])];
+    if (of_group == path_tracer::kNoFace) of_group = faces[i];
+    const std::int32_t a = lowest(of_group);
+    const std::int32_t b = lowest(faces[i]);
+    joined[std::size_t(std::max(a, b))] = std::min(a, b);
+  }
+  for (std::int32_t& face : faces) face = lowest(face);
+}
+
+}  // namespace
+
+std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles,
+                                       const CoincidentTriangles& coincident) {
+  std::vector<std::int32_t> faces = number_by_edges(triangles);
+  if (coincident.groups > 0) join_by_groups(coincident, faces);
+  return faces;
+}
+
+std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles) {
+  return number_faces(triangles, find_coincident_triangles(triangles));
 }
 
 }  // namespace testbench

@@ -3,11 +3,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "testbench/scene/coincident_triangles.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
 
-/// The face number of each triangle. Triangles that share an edge and lie in one plane have the same number.
+/// The face number of each triangle. Triangles of one plane that share an edge or coincide have the same
+/// number, and so have all that such triangles connect.
+std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles,
+                                       const CoincidentTriangles& coincident);
 std::vector<std::int32_t> number_faces(const std::vector<Triangle>& triangles);
 
 /// The unit normal times twice the area.

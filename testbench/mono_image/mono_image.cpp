@@ -8,11 +8,11 @@
 #include <optional>
 #include <unordered_map>
 
-#include "firmware/path_tracer/geometry/triangle_record.hpp"
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/scene_features.hpp"
+#include "testbench/mono_image/scene_layers.hpp"
 #include "testbench/scene/film_ray.hpp"
 #include "testbench/scene/normalise.hpp"
 #include "testbench/system/error.hpp"
@@ -24,7 +24,6 @@ using path_tracer::CameraRecord;
 using path_tracer::LightRecord;
 using path_tracer::LightShape;
 using path_tracer::SurfaceRecord;
-using path_tracer::TriangleRecord;
 
 cn::vec3<double> to_record(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
@@ -43,17 +42,10 @@ CameraRecord camera_record(const Camera& camera, const FilmSize& film) {
   return record;
 }
 
-TriangleRecord triangle_record(const Triangle& triangle, const path_tracer::TrianglePlace& place) {
-  return path_tracer::triangle_record(to_record(triangle.vertex[0]),
-                                      to_record(triangle.vertex[1] - triangle.vertex[0]),
-                                      to_record(triangle.vertex[2] - triangle.vertex[0]), place);
-}
-
 /// The box in which the firmware may find hits of the triangle (padded_box(), triangle_record.hpp).
-Box padded_box(const Triangle& triangle, double reach) {
-  const path_tracer::PaddedBox<double> box = path_tracer::padded_box(
-      to_record(triangle.vertex[0]), to_record(triangle.vertex[1] - triangle.vertex[0]),
-      to_record(triangle.vertex[2] - triangle.vertex[0]), reach);
+Box padded_box(const path_tracer::TriangleShape& shape, double reach) {
+  const path_tracer::PaddedBox<double> box =
+      path_tracer::padded_box(shape.vertex, shape.edge1, shape.edge2, reach);
   return {{box.lower.x, box.lower.y, box.lower.z}, {box.upper.x, box.upper.y, box.upper.z}};
 }
 
@@ -67,19 +59,32 @@ double reach_of(const Scene& scene) {
   return kRoom * glm::length(all.upper - all.lower);
 }
 
-SurfaceRecord surface_record(const Triangle& triangle, const Material& material, std::int32_t face) {
+/// Triangles, faces and planes as the image's parts need them.
+struct Triangles {
+  const Scene& scene;
+  const CoincidentTriangles coincident{find_coincident_triangles(scene.triangles)};
+  const std::vector<std::int32_t> faces{number_faces(scene.triangles, coincident)};
+  const SceneLayers layers{scene.triangles, coincident, faces};
+
+  explicit Triangles(const Scene& of) : scene(of) {}
+  std::size_t count() const { return scene.triangles.size(); }
+};
+
+SurfaceRecord surface_record(const Triangle& triangle, const Material& material, std::int32_t face,
+                             std::int32_t light) {
   SurfaceRecord record;
   record.normal = to_record(glm::normalize(area_normal(triangle)));
   record.reflectance = to_record(material.reflectance);
   record.emission = to_record(material.emission);
   record.face = face;
+  record.light = light;
   return record;
 }
 
 struct Lights {
   std::vector<LightRecord> records;
   std::vector<double> cdf;
-  double total_power = 0;
+  std::vector<std::vector<std::size_t>> triangles;  ///< of each light
 };
 
 /// Part of the scene that is sampled as one light.
@@ -90,6 +95,7 @@ struct Emitter {
   LightShape shape;
   std::int32_t material;
   std::int32_t face;
+  std::vector<std::size_t> triangles;
 };
 
 double area(const Emitter& emitter) {
@@ -125,8 +131,10 @@ std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
       });
     };
     if (is_corner_of_b(joined.vertex + joined.edge1) && is_corner_of_b(joined.vertex + joined.edge2) &&
-        is_corner_of_b(joined.vertex + joined.edge1 + joined.edge2))
+        is_corner_of_b(joined.vertex + joined.edge1 + joined.edge2)) {
+      joined.triangles.insert(joined.triangles.end(), b.triangles.begin(), b.triangles.end());
       return joined;
+    }
   }
   return {};
 }
@@ -140,7 +148,8 @@ std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::in
                           triangle.vertex[2] - triangle.vertex[0],
                           LightShape::triangle,
                           triangle.material,
-                          faces[i]};
+                          faces[i],
+                          {i}};
     if (power(emitter, scene) > 0) emitters.push_back(emitter);
   }
   return emitters;
@@ -169,7 +178,6 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
     throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
 
   Lights lights;
-  lights.total_power = total_power;
   double power_so_far = 0;
   for (const Emitter& emitter : emitters) {
     const double pdf = power(emitter, scene) / total_power / area(emitter);
@@ -182,6 +190,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
     record.face = emitter.face;
     record.shape = static_cast<std::int32_t>(emitter.shape);
     lights.records.push_back(record);
+    lights.triangles.push_back(emitter.triangles);
     power_so_far += power(emitter, scene);
     lights.cdf.push_back(power_so_far / total_power);
   }
@@ -193,12 +202,12 @@ void put(MonoImage& image, cn::MonoPointer<Record> to, const Record* records, st
   std::memcpy(image.bytes.data() + to.address, records, count * sizeof(Record));
 }
 
-TreeImage make_tree(const Scene& scene, double reach, const path_tracer::ProgramConfig& config) {
+TreeImage make_tree(const Triangles& triangles, double reach, const path_tracer::ProgramConfig& config) {
   const double unit = path_tracer::to_node_unit(config.tree.layout.format, reach);
   std::vector<Box> boxes;
-  boxes.reserve(scene.triangles.size());
-  for (const Triangle& triangle : scene.triangles) {
-    const Box box = padded_box(triangle, reach);
+  boxes.reserve(triangles.count());
+  for (std::size_t i = 0; i < triangles.count(); ++i) {
+    const Box box = padded_box(triangles.layers.shape_of(triangles.scene.triangles[i], i), reach);
     boxes.push_back({box.lower * unit, box.upper * unit});
   }
   return make_tree_image(boxes, config.tree);
@@ -218,35 +227,54 @@ std::vector<std::size_t> triangles_in_order(const Scene& scene, const TreeImage&
   return order;
 }
 
-void put_triangle(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
-                  std::size_t triangle, std::size_t place) {
-  const TriangleRecord record = triangle_record(
-      scene.triangles[triangle], {faces[triangle], static_cast<std::int32_t>(triangle), image.layout.reach});
-  put(image, image.layout.triangles + place, &record, 1);
+void put_at(MonoImage& image, const path_tracer::LayeredTriangleRecord& record, std::size_t place) {
+  if (image.layout.layers.any) {
+    put(image, cn::MonoPointer<path_tracer::LayeredTriangleRecord>{image.layout.triangles.address} + place,
+        &record, 1);
+  } else {
+    put(image, image.layout.triangles + place, &record.triangle, 1);
+  }
 }
 
-/// Writes, behind the triangles, a run of records for each light: all triangles of the light's face. A shadow
-/// ray that hits one of them can stop at any nearer hit. If a face has too many triangles, its run holds
-/// records that no ray hits. Shadow rays to that light then seem to miss it and search for the nearest hit as
-/// segments do.
-void put_light_runs(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
-                    const Lights& lights) {
+void put_triangle(MonoImage& image, const Triangles& triangles, std::size_t triangle, std::size_t place) {
+  put_at(image,
+         triangles.layers.record_of(
+             triangles.scene.triangles[triangle],
+             {triangles.faces[triangle], static_cast<std::int32_t>(triangle), image.layout.reach}),
+         place);
+}
+
+/// Whether all triangles of a light share one plane. Then none of its face is nearer than another along any
+/// ray, as far as they share the plane, and the light's own triangles are enough for a run.
+bool shares_plane(const SceneLayers& layers, const std::vector<std::size_t>& of_light) {
+  return layers.plane_of(of_light[0]) != kNoPlane &&
+         std::all_of(of_light.begin(), of_light.end(),
+                     [&](std::size_t i) { return layers.plane_of(i) == layers.plane_of(of_light[0]); });
+}
+
+/// Writes, behind the triangles, a run of records for each light: all triangles of the light's face, or of
+/// the light itself where they share a plane. A shadow ray that hits one of them can stop at any nearer hit.
+/// If there are too many triangles, the run holds records that no ray hits. Shadow rays to that light then
+/// seem to miss it and search for the nearest hit as segments do.
+void put_light_runs(MonoImage& image, const Triangles& all, const Lights& lights) {
+  const std::vector<std::int32_t>& faces = all.faces;
   std::unordered_map<std::int32_t, std::vector<std::size_t>> of_face;
   for (const LightRecord& light : lights.records) of_face[light.face];
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const auto found = of_face.find(faces[i]);
     if (found != of_face.end() && found->second.size() <= path_tracer::kLightRun) found->second.push_back(i);
   }
-  std::size_t place = scene.triangles.size();
-  for (const LightRecord& light : lights.records) {
-    const std::vector<std::size_t>& triangles = of_face[light.face];
+  std::size_t place = all.count();
+  for (std::size_t light = 0; light < lights.records.size(); ++light) {
+    const std::vector<std::size_t>& own = lights.triangles[light];
+    const std::vector<std::size_t>& triangles =
+        shares_plane(all.layers, own) ? own : of_face[lights.records[light].face];
     const std::size_t in_run = triangles.size() <= path_tracer::kLightRun ? triangles.size() : 0;
     for (std::size_t i = 0; i < path_tracer::kLightRun; ++i, ++place) {
-      const TriangleRecord no_triangle;
       if (i < in_run) {
-        put_triangle(image, scene, faces, triangles[i], place);
+        put_triangle(image, all, triangles[i], place);
       } else {
-        put(image, image.layout.triangles + place, &no_triangle, 1);
+        put_at(image, {}, place);
       }
     }
   }
@@ -290,20 +318,23 @@ void put_material(MonoImage& image, std::size_t triangle, const Material& materi
            path_tracer::SheenRecord{to_record(material.sheen_colour), material.sheen_roughness});
 }
 
-void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::int32_t>& faces,
-                  const Lights& lights) {
+void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& lights) {
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
-  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-    const Triangle& triangle = scene.triangles[i];
-    const SurfaceRecord record =
-        surface_record(triangle, scene.materials[std::size_t(triangle.material)], faces[i]);
-    const std::uint64_t place = i * std::uint64_t(image.layout.sizes.surface);
+  std::vector<std::int32_t> light_of(triangles.count(), path_tracer::kNoLight);
+  for (std::size_t light = 0; light < lights.triangles.size(); ++light)
+    for (const std::size_t triangle : lights.triangles[light])
+      light_of[triangle] = static_cast<std::int32_t>(light);
+  for (std::size_t i = 0; i < triangles.count(); ++i) {
+    const Triangle& triangle = triangles.scene.triangles[i];
+    const Material& material = triangles.scene.materials[std::size_t(triangle.material)];
+    const SurfaceRecord record = surface_record(triangle, material, triangles.faces[i], light_of[i]);
+    const std::uint64_t place = i * std::uint64_t(sizes.surface);
     std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
-    put_material(image, i, scene.materials[std::size_t(triangle.material)]);
-    // As in its light's record: area / (power / total power).
-    const glm::dvec3& emission = scene.materials[std::size_t(triangle.material)].emission;
-    put_tail(image, i, sizes.aim,
-             path_tracer::AimRecord{lights.total_power / (emission.x + emission.y + emission.z)});
+    put_material(image, i, material);
+    path_tracer::AimRecord aim{std::numeric_limits<double>::infinity()};
+    if (light_of[i] != path_tracer::kNoLight)
+      aim.inverse_pdf = lights.records[std::size_t(light_of[i])].inverse_pdf;
+    put_tail(image, i, sizes.aim, aim);
   }
 }
 
@@ -311,28 +342,30 @@ void put_surfaces(MonoImage& image, const Scene& scene, const std::vector<std::i
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options) {
   const path_tracer::ProgramConfig config = built_for(scene, options);
-  const std::vector<std::int32_t> faces = number_faces(scene.triangles);
-  const Lights lights = make_lights(scene, faces, config.light_sampling);
+  const Triangles triangles(scene);
+  const Lights lights = make_lights(scene, triangles.faces, config.light_sampling);
   const double reach = reach_of(scene);
   TreeImage tree;
-  if (config.uses_tree()) tree = make_tree(scene, reach, config);
+  if (config.uses_tree()) tree = make_tree(triangles, reach, config);
 
   path_tracer::SceneCounts counts;
   counts.triangles = static_cast<int>(scene.triangles.size());
   counts.lights = static_cast<int>(lights.records.size());
   counts.tree_slots = static_cast<int>(tree.slots);
+  counts.has_layers = triangles.layers.layers().any;
   MonoImage image;
   image.layout = path_tracer::make_layout(counts, num_pes, config);
   image.layout.reach = reach;
   if (config.features.environment) image.layout.environment = to_record(scene.environment.constant);
+  image.layout.layers = triangles.layers.layers();
   image.bytes.resize(image.layout.scene_bytes);
   const CameraRecord camera = camera_record(scene.camera, scene.film);
   put(image, image.layout.camera, &camera, 1);
   const std::vector<std::size_t> order = triangles_in_order(scene, tree, config);
   for (std::size_t place = 0; place < order.size(); ++place)
-    put_triangle(image, scene, faces, order[place], place);
-  if (config.uses_tree()) put_light_runs(image, scene, faces, lights);
-  put_surfaces(image, scene, faces, lights);
+    put_triangle(image, triangles, order[place], place);
+  if (config.uses_tree()) put_light_runs(image, triangles, lights);
+  put_surfaces(image, triangles, lights);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
   if (config.uses_tree())

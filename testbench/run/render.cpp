@@ -102,7 +102,8 @@ class Run {
   /// records is refused before.
   static void require_memory_for_triangles(const Scene& scene, const RenderOptions& options) {
     const int slots = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
-    const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots};
+    const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots,
+                                         scene.coincident_triangles > 0};
     const path_tracer::Layout layout =
         path_tracer::make_layout(least, options.chip.chip.pes, options.program);
     require_mono_memory("at least ", layout.total_bytes, options.chip);

@@ -73,10 +73,10 @@ double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
 
 /// Bytes of a PE's SRAM that the program leaves free; negative if it does not fit. Automatic resident nodes
 /// count as one. Throws InputError for a program that the firmware refuses.
-int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip) try {
+int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip, bool has_layers) try {
   ProgramConfig least = program;
   if (least.tree.resident_nodes == kAsManyAsFit) least.tree.resident_nodes = 1;
-  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1}, chip.chip.pes, least);
+  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1, has_layers}, chip.chip.pes, least);
   constexpr int kPlenty = 1 << 18;
   NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
   const path_tracer::PathTracer sizes(machine, path_tracer::kernels(cn::widest_level()), least, layout, {});
@@ -127,7 +127,7 @@ path_tracer::TreeShape suited_tree(int width, const ProgramConfig& of, const Tre
 /// The program's tree with a shorter stack, then with smaller treelets; none if that does not fit either.
 std::optional<path_tracer::TreeShape> shrunk_to_fit(const ProgramConfig& program,
                                                     const model::ChipConfig& chip,
-                                                    const TreeOverrides& overrides) {
+                                                    const TreeOverrides& overrides, bool has_layers) {
   // Segments a second by the temporary bin, 100,000 triangles: 159 k with treelets of 2 nodes and 2 entries,
   // 152 k with 1 node and 8 entries, 138 k with 2 nodes and 1 entry.
   constexpr int kFewEntries = 2;
@@ -137,7 +137,7 @@ std::optional<path_tracer::TreeShape> shrunk_to_fit(const ProgramConfig& program
     const bool is_least_treelet = tree.treelet_nodes <= 1 || overrides.treelet_nodes.has_value();
     const int least_entries = is_least_treelet ? 0 : kFewEntries;
     for (tree.stack_entries = program.tree.stack_entries;; tree.stack_entries /= 2) {
-      if (bytes_left(fitting, chip) >= 0) return tree;
+      if (bytes_left(fitting, chip, has_layers) >= 0) return tree;
       if (tree.stack_entries <= least_entries || overrides.stack_entries.has_value()) break;
     }
     if (is_least_treelet) return {};
@@ -197,45 +197,45 @@ path_tracer::TreeShape overridden_tree(const ProgramConfig& program, const TreeO
   return suited_tree(overrides.node_width.value_or(program.tree.layout.width), program, overrides);
 }
 
-path_tracer::TreeShape tree_that_fits(std::size_t triangles, const ProgramConfig& program,
+path_tracer::TreeShape tree_that_fits(const TriangleCount& count, const ProgramConfig& program,
                                       const model::ChipConfig& chip, const TreeOverrides& overrides) {
   ProgramConfig suited = program;
-  if (!overrides.node_width && suits_wide_nodes(program.traversal, triangles)) {
+  if (!overrides.node_width && suits_wide_nodes(program.traversal, count.triangles)) {
     suited.tree = suited_tree(path_tracer::kMaxNodeWidth, program, overrides);
-    if (const auto fitting = shrunk_to_fit(suited, chip, overrides)) return *fitting;
+    if (const auto fitting = shrunk_to_fit(suited, chip, overrides, count.has_layers)) return *fitting;
   }
   suited.tree = overridden_tree(program, overrides);
-  return shrunk_to_fit(suited, chip, overrides).value_or(suited.tree);
+  return shrunk_to_fit(suited, chip, overrides, count.has_layers).value_or(suited.tree);
 }
 
-int resident_nodes_that_fit(std::size_t triangles, const ProgramConfig& program,
+int resident_nodes_that_fit(const TriangleCount& count, const ProgramConfig& program,
                             const model::ChipConfig& chip) {
   ProgramConfig least = program;
   least.tree.resident_nodes = 1;
-  const int left = bytes_left(least, chip);
+  const int left = bytes_left(least, chip, count.has_layers);
   const auto nodes_of_tree =
-      static_cast<int>(std::min<std::size_t>(triangles, path_tracer::kMaxTreeletNodes));
+      static_cast<int>(std::min<std::size_t>(count.triangles, path_tracer::kMaxTreeletNodes));
   return std::clamp(1 + left / program.tree.layout.node_bytes(), 1, std::max(1, nodes_of_tree));
 }
 
-void complete_traversal(std::size_t triangles, const model::ChipConfig& chip, ProgramConfig& program) {
+void complete_traversal(const TriangleCount& count, const model::ChipConfig& chip, ProgramConfig& program) {
   if (!program.uses_tree() || program.tree.resident_nodes != kAsManyAsFit) return;
-  program.tree.resident_nodes = resident_nodes_that_fit(triangles, program, chip);
+  program.tree.resident_nodes = resident_nodes_that_fit(count, program, chip);
 }
 
-std::string choose_tree(std::size_t triangles, const model::ChipConfig& chip, const GivenOptions& given,
+std::string choose_tree(const TriangleCount& count, const model::ChipConfig& chip, const GivenOptions& given,
                         ProgramConfig& program) {
   const TreeOverrides overrides = overrides_of(program, given);
   if (given.count("resident_nodes") == 0) program.tree.resident_nodes = kAsManyAsFit;
   program.tree = overridden_tree(program, overrides);
   std::string reason;
   if (given.count("traversal") == 0) {
-    const TraversalChoice choice = choose_traversal(triangles, program.tree, chip);
+    const TraversalChoice choice = choose_traversal(count.triangles, program.tree, chip);
     program.traversal = choice.traversal;
     reason = choice.reason;
   }
-  if (program.uses_tree()) program.tree = tree_that_fits(triangles, program, chip, overrides);
-  complete_traversal(triangles, chip, program);
+  if (program.uses_tree()) program.tree = tree_that_fits(count, program, chip, overrides);
+  complete_traversal(count, chip, program);
   return reason;
 }
 

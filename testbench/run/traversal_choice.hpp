@@ -7,6 +7,7 @@
 
 #include "firmware/path_tracer/program/program_config.hpp"
 #include "model/config/chip_config.hpp"
+#include "testbench/scene/scene.hpp"
 
 namespace testbench {
 
@@ -14,6 +15,16 @@ namespace testbench {
 struct TraversalChoice {
   path_tracer::Traversal traversal = path_tracer::Traversal::brute_force;
   std::string reason;  ///< one line
+};
+
+/// What the choice depends on of a scene's triangles.
+struct TriangleCount {
+  std::size_t triangles = 0;
+  bool has_layers = false;  ///< their records are longer (firmware/path_tracer/records/records.hpp)
+
+  TriangleCount(std::size_t count, bool in_layers = false) : triangles(count), has_layers(in_layers) {}
+  explicit TriangleCount(const Scene& scene)
+      : TriangleCount(scene.triangles.size(), scene.coincident_triangles > 0) {}
 };
 
 /// What a ray costs in cycles of the chip, by a simple model.
@@ -51,19 +62,19 @@ path_tracer::TreeShape overridden_tree(const path_tracer::ProgramConfig& program
 /// does not fit a PE's SRAM beside everything else gets a shorter stack, then smaller treelets, then narrower
 /// nodes, as far as these are not overridden; if none of that helps, the tree stays as the overrides have it.
 /// Automatic resident nodes (kAsManyAsFit) count as one while the rest is fitted.
-path_tracer::TreeShape tree_that_fits(std::size_t triangles, const path_tracer::ProgramConfig& program,
+path_tracer::TreeShape tree_that_fits(const TriangleCount& count, const path_tracer::ProgramConfig& program,
                                       const model::ChipConfig& chip, const TreeOverrides& overrides);
 
 /// As many nodes as the SRAM has room for beside everything else, at least one and no more than a tree of so
 /// many triangles has.
-int resident_nodes_that_fit(std::size_t triangles, const path_tracer::ProgramConfig& program,
+int resident_nodes_that_fit(const TriangleCount& count, const path_tracer::ProgramConfig& program,
                             const model::ChipConfig& chip);
 
 /// TreeShape::resident_nodes until the scene is known.
 inline constexpr int kAsManyAsFit = 0;
 
 /// Replaces kAsManyAsFit by a number.
-void complete_traversal(std::size_t triangles, const model::ChipConfig& chip,
+void complete_traversal(const TriangleCount& count, const model::ChipConfig& chip,
                         path_tracer::ProgramConfig& program);
 
 /// Names of the firmware options that the user gave (program_options.hpp).
@@ -71,7 +82,7 @@ using GivenOptions = std::set<std::string>;
 
 /// Chooses every option of the tree that was not given. Returns why the traversal was chosen, in a line; ""
 /// if it was given. Throws InputError for a program that the firmware refuses.
-std::string choose_tree(std::size_t triangles, const model::ChipConfig& chip, const GivenOptions& given,
+std::string choose_tree(const TriangleCount& count, const model::ChipConfig& chip, const GivenOptions& given,
                         path_tracer::ProgramConfig& program);
 
 }  // namespace testbench

@@ -89,6 +89,17 @@ void complete_corner_attributes(CornerAttributes& attributes, std::size_t triang
     if (!of_set.empty()) of_set.resize(triangles, CornerCoordinates{});
 }
 
+void reorder_corner_attributes(CornerAttributes& attributes, const std::vector<std::size_t>& order) {
+  const auto reorder = [&](auto& list) {
+    if (list.empty()) return;
+    auto reordered = list;
+    for (std::size_t i = 0; i < order.size(); ++i) reordered[i] = list[order[i]];
+    list = std::move(reordered);
+  };
+  reorder(attributes.normals);
+  for (auto& coordinates : attributes.coordinates) reorder(coordinates);
+}
+
 void remove_corner_attributes(CornerAttributes& attributes, const std::vector<bool>& is_removed) {
   remove_entries(attributes.normals, is_removed);
   for (std::vector<CornerCoordinates>& of_set : attributes.coordinates) remove_entries(of_set, is_removed);

@@ -52,6 +52,9 @@ TriangleAttributes corner_attributes_of(const CornerAttributes& attributes, std:
 /// Gives each list that is not empty an entry for each of `triangles` triangles.
 void complete_corner_attributes(CornerAttributes& attributes, std::size_t triangles);
 
+/// Puts the entries in another order. @param attributes complete @param order the old index of each new entry
+void reorder_corner_attributes(CornerAttributes& attributes, const std::vector<std::size_t>& order);
+
 /// Removes the entries of the triangles that are marked. @param attributes complete
 void remove_corner_attributes(CornerAttributes& attributes, const std::vector<bool>& is_removed);
 

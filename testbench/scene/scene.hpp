@@ -57,6 +57,7 @@ struct Scene {
   Environment environment;
   std::vector<Light> lights;                 ///< that are no triangles
   std::size_t degenerate_triangles = 0;      ///< number of triangles of zero area that the loader dropped
+  std::size_t coincident_triangles = 0;      ///< number that lie on others, as the loader found
   Notes notes;                               ///< what the loader left out or replaced
   std::vector<std::filesystem::path> files;  ///< that the loader read or that these name
 };

@@ -9,6 +9,7 @@
 
 #include "testbench/files/input_file.hpp"
 #include "testbench/files/text_lines.hpp"
+#include "testbench/scene/coincident_triangles.hpp"
 #include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/normalise.hpp"
@@ -176,9 +177,8 @@ void add_mesh(const TableReader& table, const std::filesystem::path& directory, 
   const glm::dmat4 transform = read_transform(table);
   const std::filesystem::path mesh_file = directory / table.text("file");
   reach.require(mesh_file, table.where_is("file") + ": mesh.file");
-  const GltfFile file =
-      load_mesh_file(mesh_file, {reach, read_material(table, {directory, reach, *textures}),
-                                 read_camera_name(table), textures, true});
+  const GltfFile file = load_mesh_file(mesh_file, {reach, read_material(table, {directory, reach, *textures}),
+                                                   read_camera_name(table), textures, true});
   if (file.camera && !camera) camera = moved(file.camera->camera, transform);
   const Mesh& mesh = file.mesh;
   const auto first_material = static_cast<std::int32_t>(scene.materials.size());
@@ -322,6 +322,7 @@ Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
   scene.notes.add("a triangle without area is left out", file.string(), scene.degenerate_triangles);
   scene.notes.add("a triangle that repeats another one is left out", file.string(),
                   remove_repeated_triangles(scene));
+  order_coincident_triangles(scene, file.string());
   keep_used_textures(scene);
   return scene;
 }

@@ -23,7 +23,7 @@ Environment read_environment(const TableReader& table, const std::filesystem::pa
                              const FileReach& reach) {
   table.require_only({"constant", "file", "scale", "rotation_degrees"});
   Environment environment;
-  if (!table.has_first_of({"file"}, {"constant"})) {
+  if (table.group_of({{"file"}, {"constant"}}) == 1) {
     for (const char* const key : {"scale", "rotation_degrees"})
       if (table.has(key)) table.fail_at(key, "it beside constant", "it beside file");
     environment.constant = table.colour("constant", kMaxEmission, kIntensityAllowed);

@@ -195,7 +195,8 @@ TEST_F(MaterialsEnergy, WhiteFurnace) {
     }
 }
 
-/// Layers lose up to 15 % of white light where one direction is grazing and the other is not, and gain none.
+/// LayerTransmittance lose up to 15 % of white light where one direction is grazing and the other is not, and
+/// gain none.
 TEST_F(MaterialsEnergy, LayersGainNothing) {
   const BsdfConfig config =
       config_of({&Lobes::diffuse, &Lobes::glossy, &Lobes::mirror, &Lobes::coat, &Lobes::sheen});

@@ -38,8 +38,8 @@ TEST_P(PrefilterSearch, FindsAndIssuesWhatATestOfEveryTriangleDoes) {
   const testbench::Scene scene = test_support::scene_of(mesh.make());
   const SearchScene searched =
       test_support::search_scene(scene, {{path_tracer::NodeFormat::fp32, 4}, 1, 1, 2, 0, 0});
-  const path_tracer::Prefilter prefilter =
-      path_tracer::make_prefilter(searched.triangles.data(), int(searched.triangles.size()), searched.reach);
+  const path_tracer::Prefilter prefilter = path_tracer::make_prefilter(
+      searched.records(), searched.triangle_count, searched.reach, searched.layers);
   RaySearch search(level);
   TestRays source(scene, 31);
   int hits = 0;

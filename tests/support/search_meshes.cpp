@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "testbench/bvh/bvh.hpp"
+#include "testbench/scene/coincident_triangles.hpp"
 #include "testbench/scene/generated_scene.hpp"
 #include "testbench/scene/mesh.hpp"
 #include "tests/support/meshes.hpp"
@@ -55,6 +57,50 @@ std::vector<Triangle> slanted() {
   return triangles;
 }
 
+/// Puts triangles of the plane z = 0 into a plane that is parallel to no axis, that far from the origin.
+std::vector<Triangle> tilted(std::vector<Triangle> triangles, double shift) {
+  const glm::dvec3 u = glm::normalize(glm::dvec3(-2, 1, 0.7));
+  const glm::dvec3 v = glm::normalize(glm::cross(u, glm::dvec3(0.4, 0.2, 1)));
+  const glm::dvec3 w = glm::cross(u, v);
+  for (Triangle& triangle : triangles)
+    for (glm::dvec3& vertex : triangle.vertex)
+      vertex = u * vertex.x + v * vertex.y + w * vertex.z + glm::dvec3(0.8, -1, 0.3) * shift;
+  return triangles;
+}
+
+void add_quad(std::vector<Triangle>& triangles, const glm::dvec3& corner, const glm::dvec3& a,
+              const glm::dvec3& b) {
+  triangles.push_back(triangle(corner, corner + a, corner + a + b));
+  triangles.push_back(triangle(corner, corner + a + b, corner + b));
+}
+
+/// A floor of two triangles with carpets of every size and either side up; walls back to back, one of them
+/// cut the other way; a box that stands on the floor.
+std::vector<Triangle> layers() {
+  std::vector<Triangle> triangles;
+  add_quad(triangles, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  std::mt19937_64 random(21);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  for (double size = 1.0; size > 1e-5; size *= 0.7) {
+    const auto point = [&](const glm::dvec2& at) {
+      return glm::dvec3(at.x + size * number(random), at.y + size * number(random), 0.0);
+    };
+    const glm::dvec2 at(number(random), number(random));
+    triangles.push_back(triangle(point(at), point(at), point(at)));
+  }
+  add_quad(triangles, {-1, 0, -0.5}, {2, 0, 0}, {0, 0, 1});
+  add_quad(triangles, {1, 0, -0.5}, {-2, 0, 0}, {0, 0, 1});
+  triangles.push_back(triangle({-1, 0, -0.5}, {-1, 0, 0.5}, {1, 0, 0.5}));
+  for (int side = 0; side < 2; ++side) {
+    add_quad(triangles, {0.3, 0.2, 0.5 * side}, {0.5, 0, 0}, {0, 0.4, 0});
+    add_quad(triangles, {0.3 + 0.5 * side, 0.2, 0}, {0, 0, 0.5}, {0, 0.4, 0});
+    add_quad(triangles, {0.3, 0.2 + 0.4 * side, 0}, {0, 0, 0.5}, {0.5, 0, 0});
+  }
+  add_quad(triangles, {-0.4, -0.4, 0}, {0, 0.3, 0}, {0.3, 0, 0});
+  triangles.push_back(triangle({-0.5, -0.2, 0}, {0.5, -0.25, 0}, {0, -0.7, 0}));
+  return triangles;
+}
+
 /// The mesh, cut to a size that takes little time if rays test every triangle, as with needles and
 /// duplicates.
 std::vector<Triangle> cut_to_size(Mesh mesh, std::size_t most) {
@@ -101,6 +147,10 @@ std::vector<NamedMesh> search_meshes() {
           {"flats", flats},
           {"nested", nested},
           {"slanted", slanted},
+          {"layers", layers},
+          {"tilted_layers", [] { return tilted(layers(), 0.0); }},
+          {"large_tilted_layers", [] { return scaled(tilted(layers(), 0.0), 1e30); }},
+          {"far_tilted_layers", [] { return tilted(layers(), 1e6); }},
           {"threefold_soup", [] { return three_times(soup(40, 1.0, 0.3, 12)); }},
           {"far_from_the_origin",
            [] {
@@ -133,6 +183,7 @@ Scene scene_of(std::vector<Triangle> triangles) {
   const glm::dvec3 size = box.upper - box.lower;
   scene.camera.position = box.lower - 0.25 * std::max({size.x, size.y, size.z});
   scene.triangles = std::move(triangles);
+  testbench::order_coincident_triangles(scene, scene.name);
   return scene;
 }
 

@@ -17,8 +17,8 @@ std::vector<NamedMesh> search_meshes();
 /// Lights that share edges, and coplanar triangles on them that share no edge.
 std::vector<testbench::Triangle> decals();
 
-/// A scene of the triangles, of which the last three emit. Triangles without area are dropped, as the loader
-/// does.
+/// A scene of the triangles, of which the last three emit. As by the loader, triangles without area are
+/// dropped, and those that emit come first where triangles coincide.
 testbench::Scene scene_of(std::vector<testbench::Triangle> triangles);
 
 }  // namespace test_support

@@ -42,7 +42,8 @@ std::vector<Record> records_at(const testbench::MonoImage& image, MonoAddress fi
 
 /// The layout of a PE's SRAM.
 struct RaySearch::Offsets {
-  explicit Offsets(const TreeShape& shape) {
+  explicit Offsets(const SearchScene& scene) {
+    const TreeShape& shape = scene.shape;
     int next = 0;
     const auto take = [&](int bytes) {
       const int at = next;
@@ -58,7 +59,7 @@ struct RaySearch::Offsets {
     leaf_place = take(8);
     treelet_place = take(8);
     treelet_number = take(8);
-    leaf = take(shape.leaf_records() * int{sizeof(TriangleRecord)});
+    leaf = take(shape.leaf_records() * scene.layers.record_bytes());
     treelet = take(shape.treelet_bytes());
     resident = take(shape.resident_bytes());
     end = next;
@@ -73,25 +74,31 @@ SearchScene search_scene(const testbench::Scene& scene, const TreeShape& shape) 
   SearchScene result;
   const testbench::MonoImage plain = testbench::make_mono_image(scene, 96, config);
   const MonoAddress first = plain.layout.triangles.address;
-  result.triangles =
-      records_at<TriangleRecord>(plain, first, first + scene.triangles.size() * sizeof(TriangleRecord));
+  result.triangle_count = int(scene.triangles.size());
+  result.layers = plain.layout.layers;
+  result.triangles = records_at<char>(
+      plain, first, first + scene.triangles.size() * std::size_t(result.layers.record_bytes()));
   config.traversal = path_tracer::Traversal::refill;
   config.tree = result.shape = shape;
   const testbench::MonoImage tree = testbench::make_mono_image(scene, 96, config);
   for (const auto& region : tree.layout.regions) {
     if (region.first == tree.layout.triangles.address)
-      result.leaves = records_at<TriangleRecord>(tree, region.first, region.first + region.bytes);
+      result.leaves = records_at<char>(tree, region.first, region.first + region.bytes);
     if (region.first == tree.layout.nodes.address)
       result.nodes = records_at<std::uint8_t>(tree, region.first, region.first + region.bytes);
   }
   result.reach = tree.layout.reach;
+  const MonoAddress surfaces = tree.layout.surfaces.address;
+  for (const SurfaceRecord& surface :
+       records_at<SurfaceRecord>(tree, surfaces, surfaces + scene.triangles.size() * sizeof(SurfaceRecord)))
+    result.light_of.push_back(surface.light);
   return result;
 }
 
 SearchScene empty_search_scene(const TreeShape& shape) {
   SearchScene scene;
   scene.shape = shape;
-  scene.leaves.resize(std::size_t(shape.leaf_records()));
+  scene.leaves.resize(std::size_t(shape.leaf_records()) * sizeof(TriangleRecord));
   scene.nodes = testbench::make_tree_image({}, shape).nodes;
   scene.reach = 1.0;
   return scene;
@@ -134,15 +141,16 @@ SearchHit RaySearch::hit_of(int pe, const Offsets& at) const {
 
 std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const std::vector<RayRecord>& rays,
                                               const path_tracer::Prefilter* prefilter) {
-  const Offsets at(scene.shape);
+  const Offsets at(scene);
   scramble(at.end);
   const int count = static_cast<int>(rays.size());
   for (int pe = 0; pe < count; ++pe) write(pe, at.ray, &rays[std::size_t(pe)], sizeof(RayRecord));
   LaneMask hit_something;
   path_tracer::IntersectArguments arguments;
   arguments.ray = PolyPointer<RayRecord>(at.ray);
-  arguments.triangles = scene.triangles.data();
-  arguments.triangle_count = static_cast<int>(scene.triangles.size());
+  arguments.triangles = scene.records();
+  arguments.triangle_count = scene.triangle_count;
+  arguments.layers = scene.layers;
   arguments.prefilter = prefilter;
   arguments.reach = scene.reach;
   arguments.surfaces = kSurfaces;
@@ -157,7 +165,7 @@ std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const st
 
 std::vector<SearchHit> RaySearch::through_tree(const SearchScene& scene, const std::vector<QueuedRay>& rays,
                                                bool move) {
-  const Offsets at(scene.shape);
+  const Offsets at(scene);
   scramble(at.end);
   const int count = static_cast<int>(rays.size());
   for (int pe = 0; pe < kPes; ++pe)
@@ -169,7 +177,7 @@ std::vector<SearchHit> RaySearch::through_tree(const SearchScene& scene, const s
   }
   path_tracer::EnterArguments arguments;
   arguments.ray = PolyPointer<QueuedRay>(at.ray);
-  arguments.first_light_run = static_cast<int>(scene.triangles.size());
+  arguments.first_light_run = scene.triangle_count;
   arguments.record = PolyPointer<TraversalRecord>(at.record);
   arguments.treelet = {at.treelet_number};
   const LaneMask first_half = LaneMask::first(count / 2);
@@ -200,6 +208,7 @@ void RaySearch::load_tree(const SearchScene& scene, const Offsets& at, const Lan
   arguments.record = PolyPointer<TraversalRecord>(at.record);
   arguments.shape = scene.shape;
   arguments.triangles = kTriangles;
+  arguments.triangle_bytes = scene.layers.record_bytes();
   arguments.nodes = kNodes;
   arguments.leaf_place = {at.leaf_place};
   arguments.treelet_place = {at.treelet_place};
@@ -217,8 +226,8 @@ void RaySearch::load_tree(const SearchScene& scene, const Offsets& at, const Lan
   };
   for (int pe = 0; pe < kPes; ++pe) {
     if (has_leaf[pe])
-      bring(pe, at.leaf_place, kTriangles, scene.leaves.data(), scene.leaves.size() * sizeof(TriangleRecord),
-            at.leaf, std::size_t(scene.shape.leaf_records()) * sizeof(TriangleRecord));
+      bring(pe, at.leaf_place, kTriangles, scene.leaves.data(), scene.leaves.size(), at.leaf,
+            std::size_t(scene.shape.leaf_records() * scene.layers.record_bytes()));
     if (has_treelet[pe])
       bring(pe, at.treelet_place, kNodes, scene.nodes.data(), scene.nodes.size(), at.treelet,
             std::size_t(scene.shape.treelet_bytes()));
@@ -233,6 +242,7 @@ LaneMask RaySearch::traverse(const SearchScene& scene, const Offsets& at, const 
   arguments.leaf = PolyPointer<TriangleRecord>(at.leaf);
   arguments.treelet = {at.treelet_number};
   arguments.tree = {scene.shape, at.resident, at.treelet};
+  arguments.layers = scene.layers;
   arguments.reach = scene.reach;
   arguments.loaded_leaf = has_leaf;
   arguments.alive = &alive;

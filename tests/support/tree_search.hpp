@@ -12,13 +12,19 @@ namespace test_support {
 
 /// The data of a scene that the kernels read.
 struct SearchScene {
-  std::vector<path_tracer::TriangleRecord> triangles;  ///< in the scene's order
+  int triangle_count = 0;
+  path_tracer::Layers layers;
+  std::vector<char> triangles;  ///< records in the scene's order
   // The tree:
   path_tracer::TreeShape shape;
-  std::vector<path_tracer::TriangleRecord>
-      leaves;  ///< leaf by leaf, then those of the lights, then room for one more load
+  std::vector<char> leaves;  ///< records leaf by leaf, then those of the lights, then room for one more load
   std::vector<std::uint8_t> nodes;
   double reach = 0;
+  std::vector<std::int32_t> light_of;  ///< for each triangle the number of its light, or kNoLight
+
+  const path_tracer::TriangleRecord* records() const {
+    return reinterpret_cast<const path_tracer::TriangleRecord*>(triangles.data());
+  }
 };
 
 /// Triangles and tree as the host writes them to mono memory.

@@ -17,9 +17,11 @@ struct NearestFace : Nearest {
   }
 };
 
-inline RayOperands ray_of(const cn::PolyPointer<TraversalRecord>& record) {
-  return {record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction),
-          record.get(&TraversalRecord::left_face)};
+inline RayOperands ray_of(const cn::PolyPointer<TraversalRecord>& record, const Layers& layers) {
+  RayOperands ray{record.get(&TraversalRecord::origin), record.get(&TraversalRecord::direction),
+                  record.get(&TraversalRecord::left_face)};
+  ray.measure_from_anchor(layers);
+  return ray;
 }
 
 }  // namespace path_tracer

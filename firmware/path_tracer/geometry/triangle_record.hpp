@@ -54,15 +54,16 @@ PaddedBox<Number> padded_box(const vec3<Number>& vertex, const vec3<Number>& edg
 /// Returns the power of two that scales edges and `back`. With it, a hit is certain to lie in the padded box
 /// if the determinant's size is at least the sum of the direction's components. The test of a triangle is the
 /// same at every scale, and this scale keeps its products far from overflow and underflow.
+/// @param deviation by how much hits may be off besides rounding (layered_triangle_record.hpp)
 inline double record_scale(const vec3<double>& vertex, const vec3<double>& edge1, const vec3<double>& edge2,
-                           double reach) {
+                           double reach, double deviation = 0) {
   const auto length = [](const vec3<double>& v) {
     return std::hypot(static_cast<long double>(v.x), static_cast<long double>(v.y),
                       static_cast<long double>(v.z));
   };
   const double padding = padded_box(vertex, edge1, edge2, reach).padding;
   const long double least =
-      kRoundings * reach * length(edge1) * length(edge2) / static_cast<long double>(padding);
+      (kRoundings * reach + deviation) * length(edge1) * length(edge2) / static_cast<long double>(padding);
   if (!(least > 0) || !std::isfinite(least)) return 1.0;
   return std::scalbn(1.0, std::clamp(-std::ilogb(least) - 1, -1000, 1000));
 }
@@ -74,14 +75,18 @@ struct TrianglePlace {
   double reach = 0;  ///< of the scene
 };
 
+/// Returns edge2 x edge1.
+inline vec3<long double> back_of(const vec3<double>& edge1, const vec3<double>& edge2) {
+  return cn::cross(vec3<long double>{edge2.x, edge2.y, edge2.z},
+                   vec3<long double>{edge1.x, edge1.y, edge1.z});
+}
+
 /// Makes the record. The cross product is computed in extended precision, because in long thin triangles most
 /// of its digits cancel; it is made only once.
 inline TriangleRecord triangle_record(const vec3<double>& vertex, const vec3<double>& edge1,
                                       const vec3<double>& edge2, const TrianglePlace& place) {
   const double scale = record_scale(vertex, edge1, edge2, place.reach);
-  const vec3<long double> a{edge2.x, edge2.y, edge2.z};
-  const vec3<long double> b{edge1.x, edge1.y, edge1.z};
-  const vec3<long double> back = cn::cross(a, b) * static_cast<long double>(scale);
+  const vec3<long double> back = back_of(edge1, edge2) * static_cast<long double>(scale);
   return {vertex,     edge1 * scale, edge2 * scale, {double(back.x), double(back.y), double(back.z)},
           place.face, place.number};
 }

@@ -21,11 +21,13 @@ mask kept_mask(const LaneMask& lanes) {
 }
 
 void intersect(const IntersectArguments& arguments) {
-  const RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
-                        arguments.ray.get(&RayRecord::left_face)};
+  RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
+                  arguments.ray.get(&RayRecord::left_face)};
+  ray.measure_from_anchor(arguments.layers);
   Nearest nearest;
   search_by(PrefilteredSearch{arguments.prefilter}, ray, arguments.reach,
-            MonoTriangles{arguments.triangles, arguments.triangle_count}, nearest);
+            MonoTriangles{arguments.triangles, arguments.triangle_count, arguments.layers.record_bytes()},
+            nearest);
   write_hit(nearest, ray.origin, ray.direction, arguments.hit, arguments.hit_has_tail);
   arguments.surface_place.write(place_of(arguments.surfaces, nearest.number));
   cn::keep(nearest.number >= 0, *arguments.hit_something);
@@ -61,6 +63,9 @@ void aim(const ScatterArguments& arguments, const Surface& surface, const mask& 
   arguments.shadow_ray.set(&RayRecord::light_face, light.get(&LightRecord::face));
   arguments.lighting.set(&LightingRecord::weight, surface.reflectance * scale);
   arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
+  if (arguments.is_in_layers)
+    arguments.lighting.set(&LightingRecord::light,
+                           light_number(arguments.light_place.read(), arguments.lights));
   cn::keep(arguments.cull_shadow_rays ? wants_light & facing : wants_light, *arguments.casts);
 }
 
@@ -100,10 +105,16 @@ void scatter(const ScatterArguments& arguments) {
   if (arguments.casts_shadow_rays) aim(arguments, surface, reflects);
 }
 
+/// Whether the ray hit its light. A face is one light, except in layered scenes, where it may hold several
+/// lights and walls.
+mask is_light(const IlluminateArguments& arguments) {
+  if (arguments.is_in_layers)
+    return arguments.surface.get(&SurfaceRecord::light) == arguments.lighting.get(&LightingRecord::light);
+  return arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face);
+}
+
 void illuminate(const IlluminateArguments& arguments) {
-  const mask sees =
-      (arguments.hit.get(&HitRecord::hit) != 0) &
-      (arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face));
+  const mask sees = (arguments.hit.get(&HitRecord::hit) != 0) & is_light(arguments);
   const vec3<poly<double>> light =
       arguments.surface.get(&SurfaceRecord::emission) * arguments.lighting.get(&LightingRecord::weight);
   const vec3<poly<double>> none{0.0, 0.0, 0.0};

@@ -19,6 +19,7 @@ struct IntersectArguments {
   int triangle_count = 0;
   const Prefilter* prefilter = nullptr;  ///< the simulator's, of those triangles; nullptr to test each
   double reach = 0;                      ///< of the scene (triangle_record.hpp)
+  Layers layers;
   MonoRecords surfaces;
   bool hit_has_tail = false;  ///< ArrivalRecord
   PolyPointer<HitRecord> hit;
@@ -40,6 +41,10 @@ struct ScatterArguments {
   double max_survival = 0;
   bool casts_shadow_rays = false;  ///< if so, emission counts only where the camera sees it
   bool cull_shadow_rays = false;
+  // Of layered scenes only: where the light was found, and the place of the first one.
+  bool is_in_layers = false;
+  PolyField<MonoAddress> light_place;
+  MonoAddress lights = 0;
   PolyPointer<ScatterRecord> scatter;
   PolyPointer<RayRecord> shadow_ray;
   PolyPointer<LightingRecord> lighting;
@@ -59,6 +64,7 @@ struct IlluminateArguments {
   PolyPointer<HitRecord> hit;
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<LightingRecord> lighting;
+  bool is_in_layers = false;
   PolyPointer<DirectLightRecord> direct_light;
 };
 

@@ -91,7 +91,7 @@ void write_nearest(const TestLeafArguments& arguments, const NearestFace& neares
 
 void test_leaf(const TestLeafArguments& arguments) {
   const PolyPointer<TraversalRecord>& record = arguments.record;
-  const RayOperands ray = ray_of(record);
+  const RayOperands ray = ray_of(record, arguments.layers);
   const poly<std::int32_t> light_face = record.get(&TraversalRecord::light_face);
   NearestFace nearest;
   nearest.distance.assign_all_lanes(record.get(&TraversalRecord::distance));
@@ -99,7 +99,8 @@ void test_leaf(const TestLeafArguments& arguments) {
   const poly<std::int32_t> number = record.get(&TraversalRecord::number);
   nearest.number.assign_all_lanes(number);
   nearest.face.assign_all_lanes(light_face);
-  search(ray, arguments.reach, MonoTriangles{arguments.triangles, arguments.count}, nearest);
+  search(ray, arguments.reach,
+         MonoTriangles{arguments.triangles, arguments.count, arguments.layers.record_bytes()}, nearest);
   // A shadow ray that missed its light finds what else it hits, because the light's face may have other
   // triangles.
   record.set(&TraversalRecord::light_face,

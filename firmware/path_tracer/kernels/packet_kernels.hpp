@@ -82,6 +82,7 @@ struct TestLeafArguments {
   const TriangleRecord* triangles = nullptr;
   int count = 0;
   double reach = 0;  ///< of the scene (triangle_record.hpp)
+  Layers layers;
 };
 
 struct PacketKernels {

@@ -20,6 +20,12 @@ inline poly<cn::MonoAddress> place_of(const MonoRecords& records, const poly<std
   return place_of(records.first, index, std::size_t(records.record_bytes));
 }
 
+/// Returns a light's number, from its place among the lights.
+inline poly<std::int32_t> light_number(const poly<cn::MonoAddress>& place, cn::MonoAddress lights) {
+  const poly<double> offset = cn::convert<double>(cn::low_word(place - lights));
+  return cn::convert<std::int32_t>(offset * (1.0 / sizeof(LightRecord)) + 0.5);
+}
+
 /// The record at `place` bytes behind the start of another, in its tail (records/tails.hpp).
 template <class Tail, class Record>
 cn::PolyPointer<Tail> tail(const cn::PolyPointer<Record>& record, int place = sizeof(Record)) {

@@ -133,6 +133,9 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
   arguments.shadow_ray.set(&RayRecord::light_face, light.get(&LightRecord::face));
   arguments.lighting.set(&LightingRecord::weight, contribution);
   arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
+  if (arguments.is_in_layers)
+    arguments.lighting.set(&LightingRecord::light,
+                           light_number(arguments.light_place.read(), arguments.lights));
   cn::keep(arguments.cull_shadow_rays ? wants_light & (largest_channel(contribution) > 0.0) : wants_light,
            *arguments.casts);
 }

@@ -12,12 +12,6 @@
 namespace path_tracer {
 namespace {
 
-/// Returns a light's number, from its place among the lights.
-poly<std::int32_t> light_number(const poly<MonoAddress>& place, MonoAddress lights) {
-  const poly<double> offset = cn::convert<double>(cn::low_word(place - lights));
-  return cn::convert<std::int32_t>(offset * (1.0 / sizeof(LightRecord)) + 0.5);
-}
-
 void enqueue(const EnqueueArguments& arguments) {
   arguments.ray.set(&QueuedRay::slot, cn::pe_num() + arguments.first_slot);
   arguments.ray.set(&QueuedRay::light, light_number(arguments.light_place.read(), arguments.lights));
@@ -86,8 +80,8 @@ void locate(const LocateArguments& arguments) {
   const PolyPointer<TraversalRecord>& record = arguments.record;
   const TreeShape& shape = arguments.shape;
   const mask has_leaf = record.get(&TraversalRecord::leaf_count) > 0;
-  arguments.leaf_place.write(
-      place_of(arguments.triangles, record.get(&TraversalRecord::leaf), sizeof(TriangleRecord)));
+  arguments.leaf_place.write(place_of(arguments.triangles, record.get(&TraversalRecord::leaf),
+                                      static_cast<std::size_t>(arguments.triangle_bytes)));
 
   const poly<std::int32_t> next = next_node(arguments, record.get(&TraversalRecord::node));
   const mask elsewhere = next >= poly<std::int32_t>(shape.resident_nodes);

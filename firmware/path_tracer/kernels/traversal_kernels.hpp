@@ -61,6 +61,7 @@ struct LocateArguments {
   PolyPointer<TraversalRecord> record;
   TreeShape shape;
   MonoAddress triangles = 0;
+  int triangle_bytes = sizeof(TriangleRecord);  ///< of each triangle (Layers)
   MonoAddress nodes = 0;
   PolyField<MonoAddress> leaf_place;
   PolyField<MonoAddress> treelet_place;
@@ -75,7 +76,8 @@ struct TraverseArguments {
   PolyPointer<TriangleRecord> leaf;
   PolyField<std::int32_t> treelet;
   TreeInSram tree;
-  double reach = 0;                       ///< of the scene (triangle_record.hpp)
+  double reach = 0;  ///< of the scene (triangle_record.hpp)
+  Layers layers;
   const LaneMask* loaded_leaf = nullptr;  ///< nullptr if no PE has a leaf
   LaneMask* alive = nullptr;
 };

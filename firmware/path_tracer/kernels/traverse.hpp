@@ -10,12 +10,21 @@ namespace path_tracer {
 
 /// One leaf per PE.
 struct PolyTriangles {
-  PolyPointer<TriangleRecord> first;
+  PolyPointer<TriangleRecord> first;  ///< in a layered scene of a LayeredTriangleRecord
   int count;
+  bool is_in_layers;
   const poly<std::int32_t>& there;
 
   PolyTriangle operator()(int i) const {
-    const PolyPointer<TriangleRecord> at = first[i];
+    if (!is_in_layers) return triangle(first[i]);
+    const PolyPointer<LayeredTriangleRecord> at =
+        PolyPointer<LayeredTriangleRecord>(first.span().offset_bytes)[i];
+    PolyTriangle whole = triangle(at.part(&LayeredTriangleRecord::triangle));
+    whole.plane_offset.assign_all_lanes(at.get(&LayeredTriangleRecord::plane_offset));
+    whole.area_ratio.assign_all_lanes(at.get(&LayeredTriangleRecord::area_ratio));
+    return whole;
+  }
+  static PolyTriangle triangle(const PolyPointer<TriangleRecord>& at) {
     return {at.get(&TriangleRecord::vertex), at.get(&TriangleRecord::edge1), at.get(&TriangleRecord::edge2),
             at.get(&TriangleRecord::back),   at.get(&TriangleRecord::face),  at.get(&TriangleRecord::number)};
   }
@@ -30,7 +39,8 @@ inline void test_leaf(const TraverseArguments& arguments, const RayOperands& ray
   nearest.face.assign_all_lanes(light_face);
   const poly<std::int32_t> there =
       cn::select(cn::recall(*arguments.loaded_leaf), state.leaf_count, poly<std::int32_t>(0));
-  search(ray, arguments.reach, PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), there},
+  search(ray, arguments.reach,
+         PolyTriangles{arguments.leaf, arguments.tree.shape.leaf_records(), arguments.layers.any, there},
          nearest);
   cn::poly_if(there > 0, [&] {
     const mask is_missed = nearest.number < 0;
@@ -47,7 +57,7 @@ inline void test_leaf(const TraverseArguments& arguments, const RayOperands& ray
 
 template <NodeFormat format, int width>
 void traverse(const TraverseArguments& arguments) {
-  const RayOperands ray = ray_of(arguments.record);
+  const RayOperands ray = ray_of(arguments.record, arguments.layers);
   NearestFace nearest;
   nearest.distance.assign_all_lanes(arguments.record.get(&TraversalRecord::distance));
   nearest.determinant.assign_all_lanes(arguments.record.get(&TraversalRecord::determinant));

@@ -65,7 +65,7 @@ struct CosineBase {
 };
 
 /// Share of light that coat and sheen let through in one direction.
-struct Layers {
+struct LayerTransmittance {
   poly<double> coat;
   poly<double> sheen;
 };
@@ -78,7 +78,7 @@ struct BsdfTerms {
   CosineBase cosine;
   CoatLayer coat;
   SheenLayer sheen;
-  Layers layers_viewer;
+  LayerTransmittance layers_viewer;
 };
 
 struct Bsdf {

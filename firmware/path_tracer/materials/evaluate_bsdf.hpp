@@ -194,7 +194,7 @@ inline LobeValue evaluate_cosine_base(const Bsdf& bsdf, const LightSide& light) 
 struct EvaluatedBsdf {
   BsdfValue value;
   LightSide light;
-  Layers layers;  ///< the smaller transmittances of both directions
+  LayerTransmittance layers;  ///< the smaller transmittances of both directions
 };
 
 /// The lobes of the base, before they are dimmed by the layers above.
@@ -237,7 +237,7 @@ inline EvaluatedBsdf evaluate_layers(const Bsdf& bsdf, const LightSide& light, c
   Rgb value = base.value;
   poly<double> pdf = base.pdf;
   const bool has_base = lobes.cosine() || lobes.rough_specular();
-  Layers layers{1.0, 1.0};
+  LayerTransmittance layers{1.0, 1.0};
   if (lobes.sheen) {
     const GrayValue sheen = unless_absent(config, bsdf.terms.sheen.strongest > 0.0, absent,
                                           [&] { return evaluate_sheen_layer(bsdf, light, facet); });

@@ -68,7 +68,7 @@ inline poly<double> cosine_estimate(const Lobes& lobes, const CosineBase& base) 
 /// Samples in proportion to the lobes' albedos, so that no weight is much above the sum of the albedos.
 inline SamplingShares sampling_shares(const Lobes& lobes, const BsdfTerms& terms) {
   if (lobes.ways_to_sample() == 1) return {1.0, 1.0, 1.0, 1.0};
-  const Layers& layers = terms.layers_viewer;
+  const LayerTransmittance& layers = terms.layers_viewer;
   const auto below_sheen = [&](const poly<double>& a) { return lobes.sheen ? a * layers.sheen : a; };
   const auto below_coat = [&](const poly<double>& a) { return lobes.coat ? a * layers.coat : a; };
   Sum sum;

@@ -221,7 +221,7 @@ inline void assign_all(BsdfSample& to, const BsdfSample& from) {
   to.is_delta = from.is_delta;
 }
 
-inline Rgb below_layers(const Lobes& lobes, const Rgb& weight, const Layers& layers) {
+inline Rgb below_layers(const Lobes& lobes, const Rgb& weight, const LayerTransmittance& layers) {
   const Rgb below_sheen = lobes.sheen ? weight * layers.sheen : weight;
   return lobes.coat ? below_sheen * layers.coat : below_sheen;
 }

@@ -30,6 +30,6 @@ struct Prefilter {
 };
 
 /// @param reach no ray starts farther from a vertex, and no vertex is farther from another
-Prefilter make_prefilter(const TriangleRecord* first, int count, double reach);
+Prefilter make_prefilter(const TriangleRecord* first, int count, double reach, const Layers& layers = {});
 
 }  // namespace path_tracer

@@ -63,14 +63,20 @@ class Candidates {
 /// One triangle for each lane.
 class LaneTriangles {
  public:
-  LaneTriangles(const TriangleRecord* first, Candidates& candidates) {
-    for (int lane = 0; lane < cn::kStripLanes; ++lane) at_[lane] = first + candidates.take(lane);
+  /// @param first index of the candidates' first triangle
+  LaneTriangles(const MonoTriangles& triangles, int first, Candidates& candidates) {
+    for (int lane = 0; lane < cn::kStripLanes; ++lane) at_[lane] = &triangles(first + candidates.take(lane));
   }
   /// Loads all members but the face.
-  PolyTriangle load() const {
-    return {vector(&TriangleRecord::vertex), vector(&TriangleRecord::edge1),
-            vector(&TriangleRecord::edge2),  vector(&TriangleRecord::back),
-            poly<std::int32_t>(kNoFace),     integer(&TriangleRecord::number)};
+  PolyTriangle load(bool is_in_layers) const {
+    PolyTriangle triangle{vector(&TriangleRecord::vertex), vector(&TriangleRecord::edge1),
+                          vector(&TriangleRecord::edge2),  vector(&TriangleRecord::back),
+                          poly<std::int32_t>(kNoFace),     integer(&TriangleRecord::number)};
+    if (is_in_layers) {
+      triangle.plane_offset.assign_all_lanes(number_in_layers(&LayeredTriangleRecord::plane_offset));
+      triangle.area_ratio.assign_all_lanes(number_in_layers(&LayeredTriangleRecord::area_ratio));
+    }
+    return triangle;
   }
 
  private:
@@ -90,6 +96,9 @@ class LaneTriangles {
       return poly<double>(gather<double>([&](std::size_t lane) { return at_[lane]->*field.*of; }));
     };
     return {component(&vec3<double>::x), component(&vec3<double>::y), component(&vec3<double>::z)};
+  }
+  poly<double> number_in_layers(double LayeredTriangleRecord::*field) const {
+    return poly<double>(gather<double>([&](std::size_t lane) { return layered(*at_[lane]).*field; }));
   }
   poly<std::int32_t> integer(std::int32_t TriangleRecord::*field) const {
     return poly<std::int32_t>(
@@ -120,7 +129,7 @@ mask search_candidates(const RayOperands& ray, const MonoTriangles& triangles, c
                                                  std::min(Candidates::kTriangles, triangles.count - first));
     while (candidates.any()) {
       const mask left = candidates.left();
-      const PolyTriangle triangle = LaneTriangles(triangles.first + first, candidates).load();
+      const PolyTriangle triangle = LaneTriangles(triangles, first, candidates).load(ray.is_in_layers);
       const Crossing crossing(ray, triangle);
       tied = tied | take_nearer(crossing, triangle, left & crossing.inside, nearest);
     }
@@ -139,7 +148,7 @@ struct PrefilteredSearch {
       if (cn::is_charged()) return;
       cn::charge_times(std::uint64_t(triangles.count), [&] {
         Found unused = nearest;
-        search_fast(ray, MonoTriangles{triangles.first, 1}, unused);
+        search_fast(ray, MonoTriangles{triangles.first, 1, triangles.record_bytes}, unused);
       });
     };
     return cn::found_another_way(charge_every_test,

@@ -70,8 +70,13 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.camera = memory.take<CameraRecord>("camera", 1);
   // All leaf loads have the same size, so the last leaf's load reaches beyond the last triangle.
   const int behind_triangles = config.uses_tree() ? kLightRun * scene.lights + tree.leaf_records() : 0;
+  const auto triangles = std::uint64_t(scene.triangles + behind_triangles);
+  layout.layers.any = scene.has_layers;
   layout.triangles =
-      memory.take<TriangleRecord>("triangles", std::uint64_t(scene.triangles + behind_triangles));
+      scene.has_layers
+          ? cn::MonoPointer<TriangleRecord>{memory.take<LayeredTriangleRecord>("triangles", triangles)
+                                                .address}
+          : memory.take<TriangleRecord>("triangles", triangles);
   layout.surfaces =
       memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles), layout.sizes.surface);
   layout.lights = memory.take<LightRecord>("lights", std::uint64_t(scene.lights));

@@ -14,13 +14,14 @@ struct SceneCounts {
   int triangles = 0;
   int lights = 0;
   int tree_slots = 0;  ///< nodes; 0 without a tree
+  bool has_layers = false;
 };
 
 /// Addresses in mono memory.
 struct Layout {
   // The host writes the scene before the run.
   cn::MonoPointer<CameraRecord> camera;
-  cn::MonoPointer<TriangleRecord> triangles;
+  cn::MonoPointer<TriangleRecord> triangles;  ///< in a layered scene of LayeredTriangleRecords
   cn::MonoPointer<SurfaceRecord> surfaces;
   cn::MonoPointer<LightRecord> lights;
   cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i
@@ -35,6 +36,7 @@ struct Layout {
       Features{}};             ///< of records with tails: surfaces, intersection_bin, scatter_bin, path_bin
   vec3<double> environment{};  ///< radiance that arrives from outside the scene
   double reach = 0;            ///< no ray starts farther from a vertex (triangle_record.hpp)
+  Layers layers;
 
   // Bins: one record for each slot, slot_vertices for `vertices`.
   cn::MonoPointer<RayRecord> ray_bin;    ///< of brute force

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "firmware/cn/language/vec3.hpp"
@@ -10,6 +11,7 @@ namespace path_tracer {
 using cn::vec3;
 
 inline constexpr std::int32_t kNoFace = -1;
+inline constexpr std::int32_t kNoLight = -1;
 
 /// The camera turns a film position, x and y in pixels, into a ray. A pinhole camera's rays start at
 /// `position` and run along direction + right * x + down * y. An orthographic camera's start at position +
@@ -25,9 +27,9 @@ struct CameraRecord {
   std::int32_t unused = 0;
 };
 
-/// A triangle for intersection (triangle.hpp); made by triangle_record(). Triangles that touch in one plane
-/// share a face. A ray that leaves a face ignores it, so no distance threshold is needed to keep a surface
-/// from shadowing itself.
+/// A triangle for intersection (triangle.hpp); made by triangle_record(). Triangles that share an edge or lie
+/// on one another in one plane share a face. A ray that leaves a face ignores it, so no distance threshold is
+/// needed to keep a surface from shadowing itself.
 struct TriangleRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};  ///< edges and `back` are scaled by one power of two, see triangle_record()
@@ -37,13 +39,43 @@ struct TriangleRecord {
   std::int32_t number = 0;  ///< in the scene; among hits at the same distance the lowest number wins
 };
 
+/// A triangle of a layered scene: one in which triangles lie on one another in one plane. Those of such a
+/// plane have the plane in common to the last bit (layered_triangle_record.hpp): at a point of it they are
+/// equally far along every ray.
+struct LayeredTriangleRecord {
+  TriangleRecord triangle{};  ///< its `back` is the plane's, scaled by a power of two, on the triangle's side
+  double plane_offset = 0;    ///< back . (point of the plane - Layers::anchor)
+  double area_ratio = 1;      ///< length of edge2 x edge1, scaled as the edges, over that of `back`; 1 to 2
+};
+
+/// What kernels know of the layers of a scene.
+struct Layers {
+  bool any = false;       ///< whether the scene is layered; then its triangles are LayeredTriangleRecords
+  vec3<double> anchor{};  ///< a point of the scene that planes are measured from
+
+  constexpr int record_bytes() const {
+    return static_cast<int>(any ? sizeof(LayeredTriangleRecord) : sizeof(TriangleRecord));
+  }
+};
+
+/// Returns the triangle of that index in an array whose records have so many bytes each.
+inline const TriangleRecord& triangle_at(const TriangleRecord* first, int index, int record_bytes) {
+  const char* const bytes = reinterpret_cast<const char*>(first);
+  return *reinterpret_cast<const TriangleRecord*>(bytes + std::ptrdiff_t{index} * record_bytes);
+}
+/// The whole record of a triangle of a layered scene.
+inline const LayeredTriangleRecord& layered(const TriangleRecord& triangle) {
+  static_assert(offsetof(LayeredTriangleRecord, triangle) == 0);
+  return reinterpret_cast<const LayeredTriangleRecord&>(triangle);
+}
+
 /// A triangle for shading: "around 10 double precision floats" (paper, section 4.1).
 struct SurfaceRecord {
   vec3<double> normal{};  ///< unit length, towards the front
   vec3<double> reflectance{};
   vec3<double> emission{};
   std::int32_t face = kNoFace;
-  std::int32_t unused = 0;
+  std::int32_t light = kNoLight;  ///< number of the light that the triangle belongs to
 };
 
 enum class LightShape : std::int32_t {
@@ -99,7 +131,7 @@ struct ScatterRecord {
 struct LightingRecord {
   vec3<double> weight{};              ///< factor for the radiance of the light's face
   std::int32_t light_face = kNoFace;  ///< what the shadow ray must hit
-  std::int32_t unused = 0;
+  std::int32_t light = kNoLight;      ///< number of the light: what it must hit in a layered scene
 };
 
 /// From the intersection stage to the path stage: the direct light that a shadow ray found.

@@ -15,11 +15,11 @@ class BufferCutter {
     offset_bytes_ += count * PolyPointer<Record>::size_bytes();
     return start;
   }
-  /// @param record_bytes of the record and its tail
+  /// Takes so many bytes for records that begin as `Record` does.
   template <class Record>
-  PolyPointer<Record> take_with_tail(int record_bytes) {
+  PolyPointer<Record> take_bytes(int bytes) {
     const PolyPointer<Record> start(offset_bytes_);
-    offset_bytes_ += record_bytes;
+    offset_bytes_ += bytes;
     return start;
   }
   template <class T>

@@ -20,10 +20,10 @@ IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
   Loads loads;
   const RecordSizes& sizes = context_.layout.sizes;
-  loads.hit = cutter.take_with_tail<HitRecord>(sizes.hit);
-  loads.surface = cutter.take_with_tail<SurfaceRecord>(sizes.surface);
+  loads.hit = cutter.take_bytes<HitRecord>(sizes.hit);
+  loads.surface = cutter.take_bytes<SurfaceRecord>(sizes.surface);
   BufferCutter same_place(cutter);
-  loads.path = cutter.take_with_tail<PathRecord>(sizes.path);
+  loads.path = cutter.take_bytes<PathRecord>(sizes.path);
   loads.light = cutter.take<LightRecord>();
   loads.lighting = same_place.take<LightingRecord>();
   return loads;
@@ -33,7 +33,7 @@ IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
   BufferCutter same_place(cutter);
   Saves saves;
-  saves.scatter = cutter.take_with_tail<ScatterRecord>(context_.layout.sizes.scatter);
+  saves.scatter = cutter.take_bytes<ScatterRecord>(context_.layout.sizes.scatter);
   saves.lighting = cutter.take<LightingRecord>();
   saves.shadow_ray = rays_.take_room(cutter);
   saves.direct_light = same_place.take<DirectLightRecord>();
@@ -78,6 +78,9 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   arguments.max_survival = context_.config.max_survival;
   arguments.casts_shadow_rays = context_.config.casts_shadow_rays();
   arguments.cull_shadow_rays = context_.config.cull_shadow_rays;
+  arguments.is_in_layers = context_.layout.layers.any;
+  arguments.light_place = bin.light_place;
+  arguments.lights = context_.layout.lights.address;
   arguments.scatter = to.scatter;
   arguments.shadow_ray = to.shadow_ray.ray;
   arguments.lighting = to.lighting;
@@ -104,6 +107,7 @@ void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block
   arguments.hit = from.hit;
   arguments.surface = from.surface;
   arguments.lighting = from.lighting;
+  arguments.is_in_layers = context_.layout.layers.any;
   arguments.direct_light = to.direct_light;
   context_.machine.run(context_.kernels.illuminate, arguments, bin_block(block).shadow);
 }

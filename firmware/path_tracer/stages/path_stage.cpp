@@ -26,13 +26,13 @@ PathStage::PathStage(const StageContext& context, RayStore& rays, const Work& wo
 PathStage::Loads PathStage::loads(std::uint64_t step) const {
   BufferCutter cutter(context_.loads.buffer(step));
   const RecordSizes& sizes = context_.layout.sizes;
-  return {cutter.take_with_tail<PathRecord>(sizes.path), cutter.take_with_tail<ScatterRecord>(sizes.scatter),
+  return {cutter.take_bytes<PathRecord>(sizes.path), cutter.take_bytes<ScatterRecord>(sizes.scatter),
           cutter.take<DirectLightRecord>()};
 }
 
 PathStage::Saves PathStage::saves(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  return {cutter.take<VertexRecord>(),   cutter.take_with_tail<PathRecord>(context_.layout.sizes.path),
+  return {cutter.take<VertexRecord>(),   cutter.take_bytes<PathRecord>(context_.layout.sizes.path),
           cutter.take<FinishedRecord>(), cutter.take_place(),
           cutter.take_place(),           rays_.take_room(cutter)};
 }

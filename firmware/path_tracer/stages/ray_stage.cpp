@@ -13,15 +13,16 @@ void RayStage::process(std::uint64_t step, int block) {
   bin.hit_something = LaneMask{};
   IntersectArguments arguments;
   arguments.ray = PolyPointer<RayRecord>(context_.loads.buffer(step));
-  arguments.triangle_count = context_.layout.triangle_count;
-  arguments.triangles =
-      context_.machine.read_mono(context_.layout.triangles, std::size_t(arguments.triangle_count));
+  const Layout& layout = context_.layout;
+  arguments.triangle_count = layout.triangle_count;
+  arguments.triangles = read_triangles(context_.machine, layout, 0, arguments.triangle_count);
   if (prefilter_.triangles.empty())
-    prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, context_.layout.reach);
+    prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, layout.reach, layout.layers);
   arguments.prefilter = &prefilter_;
-  arguments.reach = context_.layout.reach;
-  arguments.surfaces = {context_.layout.surfaces.address, context_.layout.sizes.surface};
-  arguments.hit_has_tail = context_.layout.sizes.hit_has_tail();
+  arguments.reach = layout.reach;
+  arguments.layers = layout.layers;
+  arguments.surfaces = {layout.surfaces.address, layout.sizes.surface};
+  arguments.hit_has_tail = layout.sizes.hit_has_tail();
   arguments.hit = PolyPointer<HitRecord>(context_.saves.buffer(step));
   arguments.surface_place = bin.surface_place;
   arguments.hit_something = &bin.hit_something;

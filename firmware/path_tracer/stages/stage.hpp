@@ -20,6 +20,16 @@ struct StageContext {
   RunCounts& counts;
 };
 
+/// Reads triangles of either record, for kernels that take them as mono operands.
+inline const TriangleRecord* read_triangles(cn::Machine& machine, const Layout& layout, std::int32_t first,
+                                            std::int32_t count) {
+  const auto of_array = [&](auto triangles) {
+    return machine.read_mono(triangles + static_cast<std::uint64_t>(first), static_cast<std::size_t>(count));
+  };
+  if (!layout.layers.any) return of_array(layout.triangles);
+  return &of_array(cn::MonoPointer<LayeredTriangleRecord>{layout.triangles.address})->triangle;
+}
+
 /// One kind of step: loads a block, processes it and saves it. The pipeline (step_pipeline.hpp) decides when.
 class Stage {
  public:

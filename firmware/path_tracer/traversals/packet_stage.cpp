@@ -157,11 +157,10 @@ void PacketStage::test_leaf(std::int32_t first_triangle, std::int32_t count, con
   TestLeafArguments arguments;
   arguments.record = record_;
   arguments.packet = packet_;
-  arguments.triangles =
-      context_.machine.read_mono(context_.layout.triangles + static_cast<std::uint64_t>(first_triangle),
-                                 static_cast<std::size_t>(count));
+  arguments.triangles = read_triangles(context_.machine, context_.layout, first_triangle, count);
   arguments.count = count;
   arguments.reach = tree_.reach;
+  arguments.layers = context_.layout.layers;
   context_.machine.run(packet_kernels_.test_leaf, arguments, rays);
 }
 

@@ -16,9 +16,9 @@ TreeContext::TreeContext(cn::Machine& machine, const ProgramConfig& config, cons
   machine.sem_wait(done);
 }
 
-int TreeStage::load_bytes(const TreeShape& shape) {
+int TreeStage::load_bytes(const TreeShape& shape, const Layers& layers) {
   return 4 * int{sizeof(MonoAddress)} + int{sizeof(QueuedRay)} +
-         shape.leaf_records() * int{sizeof(TriangleRecord)} + shape.treelet_bytes();
+         shape.leaf_records() * layers.record_bytes() + shape.treelet_bytes();
 }
 
 TreeStage::Loads TreeStage::loads(std::uint64_t step) const {
@@ -30,15 +30,15 @@ TreeStage::Loads TreeStage::loads(std::uint64_t step) const {
   loads.treelet = cutter.take_field<std::int32_t>();
   cutter.take_field<std::int32_t>();
   loads.ray = cutter.take<QueuedRay>();
-  loads.leaf = cutter.take<TriangleRecord>(tree_.tree.shape.leaf_records());
+  loads.leaf = cutter.take_bytes<TriangleRecord>(leaf_bytes());
   loads.treelet_offset = cutter.take_place().offset_bytes;
   return loads;
 }
 
 TreeStage::Hits TreeStage::hits(std::uint64_t step) const {
   BufferCutter cutter(context_.saves.buffer(step));
-  return {cutter.take_with_tail<HitRecord>(context_.layout.sizes.hit), cutter.take_place(),
-          cutter.take_place(), cutter.take_place()};
+  return {cutter.take_bytes<HitRecord>(context_.layout.sizes.hit), cutter.take_place(), cutter.take_place(),
+          cutter.take_place()};
 }
 
 LaneMask TreeStage::packed_rays(int block) const {
@@ -63,6 +63,7 @@ void TreeStage::locate(std::uint64_t step, PolyPointer<TraversalRecord> record, 
   arguments.record = record;
   arguments.shape = tree_.tree.shape;
   arguments.triangles = context_.layout.triangles.address;
+  arguments.triangle_bytes = context_.layout.layers.record_bytes();
   arguments.nodes = context_.layout.nodes.address;
   arguments.leaf_place = to.leaf_place;
   arguments.treelet_place = to.treelet_place;
@@ -75,8 +76,7 @@ void TreeStage::locate(std::uint64_t step, PolyPointer<TraversalRecord> record, 
 void TreeStage::load_leaves(std::uint64_t step, Needs& needs) {
   const Loads to = loads(step);
   needs.leaves = context_.machine.count(needs.leaf);
-  const cn::PolySpan leaf{to.leaf.span().offset_bytes,
-                          tree_.tree.shape.leaf_records() * int{sizeof(TriangleRecord)}};
+  const cn::PolySpan leaf{to.leaf.span().offset_bytes, leaf_bytes()};
   context_.loads.copy_m2p(step, TransferRing::kNoBlock, leaf, context_.machine.places_in(to.leaf_place),
                           needs.leaf);
   context_.counts.traversal.leaf_loads += std::uint64_t(needs.leaves);
@@ -117,6 +117,7 @@ LaneMask TreeStage::traverse(std::uint64_t step, PolyPointer<TraversalRecord> re
   arguments.tree = tree_.tree;
   arguments.tree.treelet_offset = from.treelet_offset;
   arguments.reach = tree_.reach;
+  arguments.layers = context_.layout.layers;
   arguments.loaded_leaf = needs.leaves > 0 ? &needs.leaf : nullptr;
   arguments.alive = &alive;
   context_.machine.run(kernels_.traverse_through(tree_.tree.shape.layout), arguments, rays);

@@ -25,7 +25,7 @@ class TreeStage : public Stage {
   static int save_bytes(const ProgramConfig& config) {
     return RecordSizes(config.features).hit + 3 * int{sizeof(MonoAddress)};
   }
-  static int load_bytes(const TreeShape& shape);
+  static int load_bytes(const TreeShape& shape, const Layers& layers);
 
   bool works_on_slots() const override { return false; }
 
@@ -36,10 +36,11 @@ class TreeStage : public Stage {
     PolyField<MonoAddress> ray_place;
     PolyField<std::int32_t> treelet;
     PolyPointer<QueuedRay> ray;
-    PolyPointer<TriangleRecord> leaf;
+    PolyPointer<TriangleRecord> leaf;  ///< in a layered scene of LayeredTriangleRecords
     int treelet_offset;
   };
   Loads loads(std::uint64_t step) const;
+  int leaf_bytes() const { return tree_.tree.shape.leaf_records() * context_.layout.layers.record_bytes(); }
 
   /// Returns the PEs with a ray in a block of the ray queue.
   LaneMask packed_rays(int block) const;

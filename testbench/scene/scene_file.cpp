@@ -241,10 +241,7 @@ void require_camera_in_reach(const Scene& scene, const std::filesystem::path& fi
 
 void add_light_with_note(Scene& scene, const std::filesystem::path& file) {
   add_default_light(scene);
-  scene.notes.add(
-      "no triangle emits (OBJ: Ke, glTF: emissiveFactor), so a square light above and behind the camera is "
-      "added",
-      file.string());
+  scene.notes.add("no triangle emits, so a square light above and behind the camera is added", file.string());
 }
 
 /// The scene of a mesh file that is opened directly, without a scene.toml.

@@ -79,16 +79,8 @@ bool any_light_faces(const Scene& scene, const std::vector<ViewedPoint>& points)
   });
 }
 
-}  // namespace
-
-bool is_black(const Film& film) {
-  for (int pixel = 0; pixel < film.pixel_count(); ++pixel)
-    if (film.mean(pixel) != glm::dvec3(0.0)) return false;
-  return true;
-}
-
-std::string why_black(const Scene& any_unit) {
-  const Scene scene = normalised(any_unit);
+/// why_black() of a scene in its normal unit.
+std::string reason_of_black(const Scene& scene) {
   const std::vector<ViewedPoint> points = viewed_points(scene);
   if (points.empty()) return "the camera sees no surface; it may look away from the scene";
   if (!any_light_faces(scene, points))
@@ -105,6 +97,18 @@ std::string why_black(const Scene& any_unit) {
     return "the surfaces that the camera sees reflect no light";
   return "no path has met a light; lights may be hidden from what the camera sees, or more samples may find "
          "them";
+}
+
+}  // namespace
+
+bool is_black(const Film& film) {
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel)
+    if (film.mean(pixel) != glm::dvec3(0.0)) return false;
+  return true;
+}
+
+std::string why_black(const Scene& scene) {
+  return reason_of_black(normalised(scene));
 }
 
 }  // namespace testbench

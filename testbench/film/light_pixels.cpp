@@ -95,14 +95,14 @@ void mark(const FilmPolygon& polygon, const FilmSize& film, std::vector<bool>& m
 
 }  // namespace
 
-std::vector<bool> light_pixels(const Scene& any_unit) {
-  const Scene scene = normalised(any_unit);
+std::vector<bool> light_pixels(const Scene& scene) {
   std::vector<bool> marked(std::size_t(scene.film.width) * std::size_t(scene.film.height));
-  for (const Triangle& triangle : scene.triangles) {
-    const Material& material = scene.materials[std::size_t(triangle.material)];
+  const Scene normal = normalised(scene);
+  for (const Triangle& triangle : normal.triangles) {
+    const Material& material = normal.materials[std::size_t(triangle.material)];
     if (material.emission == glm::dvec3(0.0)) continue;
-    if (!faces_camera(triangle, scene.camera)) continue;
-    mark(project(triangle, scene.camera, scene.film), scene.film, marked);
+    if (!faces_camera(triangle, normal.camera)) continue;
+    mark(project(triangle, normal.camera, normal.film), normal.film, marked);
   }
   return marked;
 }

@@ -144,10 +144,15 @@ std::optional<Material> read_material(const TableReader& mesh, const TextureFile
 
 Camera moved(Camera camera, const glm::dmat4& transform) {
   camera.position = glm::dvec3(transform * glm::dvec4(camera.position, 1.0));
-  camera.direction = glm::normalize(glm::dmat3(transform) * camera.direction);
-  const glm::dvec3 up = glm::dmat3(transform) * camera.up;
+  // Without the power of two in the scale, whose square may vanish or overflow.
+  const glm::dvec3 first(transform[0]);
+  const double largest = std::max({std::abs(first.x), std::abs(first.y), std::abs(first.z)});
+  const int exponent = std::max(std::ilogb(largest), -1000);
+  const glm::dmat3 axes = glm::dmat3(transform) * std::ldexp(1.0, -exponent);
+  camera.direction = glm::normalize(axes * camera.direction);
+  const glm::dvec3 up = axes * camera.up;
   camera.up = glm::normalize(up);
-  if (camera.orthographic_height) *camera.orthographic_height *= glm::length(up);
+  if (camera.orthographic_height) *camera.orthographic_height *= std::ldexp(glm::length(up), exponent);
   return camera;
 }
 
@@ -255,10 +260,7 @@ void require_camera_in_reach(const Scene& scene, const std::filesystem::path& fi
 
 void add_light_with_note(Scene& scene, const std::filesystem::path& file) {
   add_default_light(scene);
-  scene.notes.add(
-      "no triangle emits (OBJ: Ke, glTF: emissiveFactor), so a square light above and behind the camera is "
-      "added",
-      file.string());
+  scene.notes.add("no triangle emits, so a square light above and behind the camera is added", file.string());
 }
 
 /// The scene of a mesh file that is opened directly, without a scene.toml.

@@ -257,6 +257,10 @@ TEST_F(GltfSchema, ASceneFileNamesTheCamera) {
   EXPECT_FALSE(scene("").camera.orthographic_height);
   EXPECT_EQ(scene("camera = \"plan\"\n").camera.orthographic_height, 12.0) << "scaled as the mesh is";
   EXPECT_EQ(scene("camera = \"side\"\n").camera.vertical_field_of_view_radians, 0.25) << "its node's name";
+  write("tiny.toml", "[[mesh]]\nfile = \"a.gltf\"\nscale = 1e-170\ncamera = \"plan\"\n");
+  const testbench::Camera tiny = testbench::load_scene(directory_ / "tiny.toml").camera;
+  EXPECT_EQ(tiny.direction, glm::dvec3(0, 0, -1)) << "though the square of the scale is 0";
+  EXPECT_NEAR(*tiny.orthographic_height / 4e-170, 1.0, 1e-15);
   test_support::expect_input_error([&] { scene("camera = \"top\"\n"); }, {"a.gltf", "/cameras", "'top'"});
 }
 

@@ -293,14 +293,13 @@ void join_pair(const std::vector<Triangle>& triangles, const PlaneEntry& a, cons
 CoincidentTriangles numbered(JoinedSets& sets, std::size_t triangles) {
   CoincidentTriangles result;
   result.group.assign(triangles, kNoGroup);
+  std::vector<bool> has_others(triangles);
+  for (std::uint32_t i = 0; i < triangles; ++i)
+    if (sets.first_of(i) != i) has_others[sets.first_of(i)] = true;
   for (std::uint32_t i = 0; i < triangles; ++i) {
     const std::uint32_t first = sets.first_of(i);
-    if (first == i) continue;
-    if (result.group[first] == kNoGroup) {
-      result.group[first] = result.groups++;
-      ++result.triangles;
-    }
-    result.group[i] = result.group[first];
+    if (!has_others[first]) continue;
+    result.group[i] = first == i ? result.groups++ : result.group[first];
     ++result.triangles;
   }
   return result;

@@ -183,11 +183,12 @@ Scene stadium(int triangles) {
   scene.film = {kDefaultFilmSide, kDefaultFilmSide};
   scene.camera.position = {0.0, 1.5 * kBlobRadius, -4.0 * kBlobRadius};
   scene.camera.vertical_field_of_view_radians = glm::radians(40.0);
-  add_quad(scene, {-kRadius, 0, -kRadius}, {0, 0, 2 * kRadius}, {2 * kRadius, 0, 0}, kGreen);
   scene.materials[kLight].emission = {1.7, 1.6,
                                       1.4};  // less than a room's light, because the lamp is so large
   const double lamp = 0.4 * kRadius;
+  // The lamp is first because the lawn and the stands' lowest floor coincide (order_coincident_triangles()).
   add_quad(scene, {-lamp, 0.8 * kRadius, -lamp}, {2 * lamp, 0, 0}, {0, 0, 2 * lamp}, kLight);
+  add_quad(scene, {-kRadius, 0, -kRadius}, {0, 0, 2 * kRadius}, {2 * kRadius, 0, 0}, kGreen);
   const int sides = std::max(8, triangles / 4 / (4 * kRows));
   add_stands(scene, kRadius, sides, kRows);
   add_blob(scene, {0, kBlobRadius, 0}, kBlobRadius, triangles - double(scene.triangles.size()));

@@ -44,6 +44,19 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-14);
 }
 
+/// Two files that meet in a plane, as they are often exported: a ceiling, and a lamp let into it.
+TEST_F(SceneFileTest, puts_a_lamp_before_the_ceiling_in_whose_plane_it_lies) {
+  write("ceiling.mtl", "newmtl ceiling\nKd 0.5 0.5 0.5\n");
+  write("ceiling.obj", "mtllib ceiling.mtl\nv 3 -1 -1\nv -1 3 -1\nv -1 -1 3\nusemtl ceiling\nf 1 2 3\n");
+  const Scene scene = load(std::string(kCamera) + "[[mesh]]\nfile = \"ceiling.obj\"\n" + kMesh);
+  ASSERT_EQ(scene.triangles.size(), 2U);
+  EXPECT_EQ(scene.coincident_triangles, 2U);
+  EXPECT_EQ(scene.triangles[0].vertex[0], glm::dvec3(1, 0, 0));
+  EXPECT_EQ(scene.triangles[1].vertex[0], glm::dvec3(3, -1, -1));
+  ASSERT_EQ(scene.notes.lines().size(), 1U);
+  EXPECT_NE(scene.notes.lines()[0].find("lights first"), std::string::npos);
+}
+
 TEST_F(SceneFileTest, loads_a_file_or_its_directory) {
   const Scene scene = load(std::string(kCamera) + "[film]\nwidth = 64\nheight = 32\n" + kMesh);
   EXPECT_EQ(scene.name, directory_.filename().string());
@@ -335,15 +348,16 @@ TEST_F(SceneFileTest, a_triangle_that_repeats_another_is_left_out) {
         vertices +
             "usemtl wall\nf 3 1 2\nf 1 2 5\nusemtl lamp\nf 1 2 3\nf 2 3 4\nf 3 2 1\nusemtl wall\nf 2 3 1\n");
   const Scene scene = load(std::string(kCamera) + kMesh + kMesh);
-  // Three are left: the lamp, its back, and the wall up to vertex 5.
+  // Three are left: the lamp and its back, which come first because they coincide, and the wall up to vertex
+  // 5.
   ASSERT_EQ(scene.triangles.size(), 3U);
-  EXPECT_EQ(scene.triangles[0].vertex[2], glm::dvec3(0, 0, 5));
-  EXPECT_EQ(scene.materials.at(std::size_t(scene.triangles[1].material)).name, "lamp");
-  EXPECT_EQ(scene.triangles[1].vertex[0], glm::dvec3(0, 0, 0));
-  EXPECT_EQ(scene.triangles[2].vertex[0], glm::dvec3(0, 1, 0));
-  EXPECT_EQ(scene.notes.lines(),
-            std::vector<std::string>{(directory_ / "scene.toml").string() +
-                                     ": a triangle that repeats another one is left out, 9 times"});
+  EXPECT_EQ(scene.materials.at(std::size_t(scene.triangles[0].material)).name, "lamp");
+  EXPECT_EQ(scene.triangles[0].vertex[0], glm::dvec3(0, 0, 0));
+  EXPECT_EQ(scene.triangles[1].vertex[0], glm::dvec3(0, 1, 0));
+  EXPECT_EQ(scene.triangles[2].vertex[2], glm::dvec3(0, 0, 5));
+  ASSERT_EQ(scene.notes.lines().size(), 2U);
+  EXPECT_EQ(scene.notes.lines()[0], (directory_ / "scene.toml").string() +
+                                        ": a triangle that repeats another one is left out, 9 times");
 }
 
 TEST(Scenes, TheClosedCornellBoxHoldsCopiesOfTheOpenOne) {

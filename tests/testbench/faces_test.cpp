@@ -52,6 +52,17 @@ TEST(Faces, TouchingInAPointOrAPartOfAnEdgeIsNotEnough) {
             (std::vector<std::int32_t>{0, 1, 2}));
 }
 
+TEST(Faces, WhatLiesOnOneAnotherInAPlaneSharesWithAllThatEdgesConnect) {
+  const glm::dvec3 a(0, 0, 0), b(4, 0, 0), c(4, 4, 0), d(0, 4, 0), up(0, 0, 4);
+  // A floor, two carpets that touch different halves of it, one of them upside down, and a wall.
+  EXPECT_EQ(number_faces({{{a, b, c}, 0},
+                          {{a, c, d}, 0},
+                          {{{2, 1, 0}, {3, 1, 0}, {3, 2, 0}}, 0},
+                          {{{1, 2, 0}, {1, 3, 0}, {2, 3, 0}}, 0},
+                          {{a, b, up}, 0}}),
+            (std::vector<std::int32_t>{0, 0, 0, 0, 3}));
+}
+
 TEST(Faces, ParallelPlanesAreApart) {
   EXPECT_EQ(number_faces({{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0}, {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, 0}}),
             (std::vector<std::int32_t>{0, 1}));

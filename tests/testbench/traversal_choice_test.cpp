@@ -51,8 +51,9 @@ TEST(TraversalChoice, FollowsTheChip) {
 }
 
 /// Whether the program fits the SRAM of the chip's PEs.
-bool fits(const ProgramConfig& program) {
-  const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 64}, kChip.chip.pes, program);
+bool fits(const ProgramConfig& program, bool has_layers = false) {
+  const path_tracer::Layout layout =
+      path_tracer::make_layout({0, 0, 64, has_layers}, kChip.chip.pes, program);
   testbench::NativeMachine machine(kChip.chip.pes, kChip.poly.sram_bytes, layout.total_bytes);
   try {
     path_tracer::PathTracer(machine, path_tracer::kernels(cn::narrowest_level()), program, layout, {});
@@ -75,6 +76,18 @@ TEST(ResidentNodes, AreAsManyAsFit) {
       ++program.tree.resident_nodes;
       EXPECT_FALSE(fits(program)) << program.tree.resident_nodes;
     }
+}
+
+/// Records of layered scenes are longer, so fewer nodes fit beside a leaf.
+TEST(ResidentNodes, AreFewerInALayeredScene) {
+  ProgramConfig program;
+  program.traversal = Traversal::refill;
+  const int in_layers = testbench::resident_nodes_that_fit({1000000, true}, program, kChip);
+  EXPECT_LT(in_layers, testbench::resident_nodes_that_fit(1000000, program, kChip));
+  program.tree.resident_nodes = in_layers;
+  EXPECT_TRUE(fits(program, true));
+  ++program.tree.resident_nodes;
+  EXPECT_FALSE(fits(program, true));
 }
 
 /// `program` with its tree reduced until it fits.

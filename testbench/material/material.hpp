@@ -83,6 +83,9 @@ void for_each_texture(Textures& textures, const Visitor& visit) {
 /// Whether the material has a texture.
 bool has_texture(const Material& material);
 
+/// Drops textures whose factor is 0, which show nothing.
+void drop_idle_textures(Material& material);
+
 /// Whether the material only reflects diffusely and emits, the same all over.
 bool is_plain(const Material& material);
 

@@ -153,6 +153,12 @@ class MtlReader {
   void finish_material() {
     if (materials_.empty()) return;
     set_mtl_surface(surface_, material());
+    for (MtlTexture& texture : materials_.back().textures) {
+      if (texture.slot == &MaterialTextures::roughness && !surface_.roughness)
+        texture.factor = &Material::roughness;
+      if (texture.slot == &MaterialTextures::metallic && !surface_.metallic)
+        texture.factor = &Material::metallic;
+    }
     if (has_reflectance_ || material().emission != glm::dvec3(0.0)) return;
     material().reflectance = glm::dvec3(kDefaultReflectance);
     static_assert(kDefaultReflectance == 0.8, "the note says 0.8");

@@ -121,6 +121,14 @@ bool is_grey(const Image& image) {
   return true;
 }
 
+/// A texture of roughness or metallic makes a material one of Pr and Pm, not of Ks and Ns.
+void set_factors(const MtlTexture& texture, Material& material) {
+  if (texture.slot != &MaterialTextures::roughness && texture.slot != &MaterialTextures::metallic) return;
+  material.specular = 1.0;
+  material.specular_colour = glm::dvec3(1.0);
+  if (texture.factor != nullptr) material.*texture.factor = 1.0;
+}
+
 /// The channel of a texture that stands for one number: alpha's own if the image has one.
 int channel_of(const MtlTexture& texture, const Image& image) {
   if (texture.channel) return *texture.channel;
@@ -153,6 +161,8 @@ void load_mtl_textures(const std::vector<MtlTexture>& textures, const MtlTexture
       notes.add("a texture is missing", texture.where + ": " + texture.file);
       continue;
     }
+    if (texture.slot == &MaterialTextures::emission && material.emission == glm::dvec3(0.0))
+      notes.add("map_Ke without Ke shows nothing", texture.where);
     const std::int32_t index = files.store.index_of_file(*file, texture.encoding);
     const Image& image = files.store.at(index).image;
     if (texture.may_be_height && is_grey(image)) {
@@ -163,6 +173,7 @@ void load_mtl_textures(const std::vector<MtlTexture>& textures, const MtlTexture
     reference = texture.reference;
     reference.texture = index;
     reference.channel = channel_of(texture, image);
+    set_factors(texture, material);
     if (texture.slot == &MaterialTextures::normal) material.normal_scale = texture.bump_multiplier;
     if (texture.slot == &MaterialTextures::alpha) material.alpha_mode = AlphaMode::blend;
   }

@@ -23,6 +23,7 @@ struct MtlTexture {
   TextureReference reference;  ///< its options, without an image
   std::optional<int> channel;  ///< of -imfchan
   double bump_multiplier = 1.0;
+  double Material::*factor = nullptr;  ///< what is 1 with the texture, because the MTL file has no number
 };
 
 /// The texture that a line of an MTL file names, behind its keyword in lower case; std::nullopt for a keyword

@@ -6,11 +6,8 @@
 namespace testbench {
 namespace {
 
-/// Scaled first, so that squares stay within the range of a double; zeros for what is no direction.
-glm::dvec3 unit_or_zero(const glm::dvec3& vector) {
-  const double largest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
-  if (!(largest > 0.0) || !std::isfinite(vector.x + vector.y + vector.z)) return glm::dvec3(0.0);
-  return glm::normalize(vector / largest);
+double largest_component(const glm::dvec3& vector) {
+  return std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
 }
 
 template <class Entry>
@@ -35,6 +32,12 @@ void remove_entries(std::vector<Entry>& list, const std::vector<bool>& is_remove
 }
 
 }  // namespace
+
+glm::dvec3 unit_or_zero(const glm::dvec3& vector) {
+  const double largest = largest_component(vector);
+  if (!(largest > 0.0) || !std::isfinite(vector.x + vector.y + vector.z)) return glm::dvec3(0.0);
+  return glm::normalize(vector / largest);
+}
 
 std::optional<CornerNormals> corner_normals(const glm::dvec3 (&vertex)[3], const CornerNormals& given) {
   constexpr double kLeastSine = 1e-4;
@@ -63,9 +66,13 @@ CornerCoordinates corner_coordinates(CornerCoordinates given) {
 }
 
 glm::dmat3 normal_transform(const glm::dmat3& transform) {
-  const glm::dmat3 cofactors(glm::cross(transform[1], transform[2]), glm::cross(transform[2], transform[0]),
-                             glm::cross(transform[0], transform[1]));
-  return glm::determinant(transform) < 0.0 ? -cofactors : cofactors;
+  const double largest = std::max(
+      {largest_component(transform[0]), largest_component(transform[1]), largest_component(transform[2])});
+  const glm::dmat3 scaled =
+      largest > 0.0 ? transform / largest : transform;  // products neither vanish nor overflow
+  const glm::dmat3 cofactors(glm::cross(scaled[1], scaled[2]), glm::cross(scaled[2], scaled[0]),
+                             glm::cross(scaled[0], scaled[1]));
+  return glm::determinant(scaled) < 0.0 ? -cofactors : cofactors;
 }
 
 void set_corner_attributes(CornerAttributes& attributes, std::size_t index,

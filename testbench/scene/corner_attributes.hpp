@@ -31,6 +31,10 @@ struct TriangleAttributes {
   std::array<std::optional<CornerCoordinates>, kTextureCoordinateSets> coordinates;
 };
 
+/// The vector with a length of 1, also where its square would vanish or overflow; zeros for what is no
+/// direction.
+glm::dvec3 unit_or_zero(const glm::dvec3& vector);
+
 /// The normals for a triangle: of unit length and turned to its front; std::nullopt if one is no direction,
 /// or if all lie within 1e-4 radians of the normal of its plane, so that nothing is to be seen of them.
 /// @param vertex of the triangle, counter-clockwise from its front

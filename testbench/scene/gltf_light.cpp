@@ -1,6 +1,5 @@
 #include "testbench/scene/gltf_light.hpp"
 
-#include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "testbench/gltf/gltf_schema.hpp"
@@ -39,14 +38,11 @@ void place_gltf_light(const GltfDocument& document, std::size_t node, const glm:
                       Light& light) {
   const std::string where = document.named("nodes", "node", node);
   light.position = glm::dvec3(transform[3]);
-  light.direction = -glm::dvec3(transform[2]);
-  const double length = glm::length(light.direction);
-  if (!(length > 0.0) || !std::isfinite(length))
+  light.direction = unit_or_zero(-glm::dvec3(transform[2]));
+  if (light.direction == glm::dvec3(0.0))
     document.fail(where, "a light in a transform without volume", "one with");
-  light.direction /= length;
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(std::abs(light.position[axis]) <= kMaxCoordinate))
-      document.fail(where, "a light too far away", "coordinates of at most 1e100");
+  if (!is_point_in_range(light.position))
+    document.fail(where, "a light too far away", "coordinates of at most 1e100");
 }
 
 }  // namespace

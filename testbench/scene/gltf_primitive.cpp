@@ -68,6 +68,8 @@ class PrimitiveReader {
     read_colours();
     read_normals();
     if (place_.is_textured) read_coordinates();
+    if (place_.is_textured && source_["attributes"].contains("TANGENT"))
+      document_.note("TANGENT is left out, tangents follow from texture coordinates", where_);
     if (place_.joints > 0) read_influences();
     read_triangles(mode);
     return std::move(result_);

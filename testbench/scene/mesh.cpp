@@ -22,20 +22,23 @@ bool is_degenerate(const Triangle& triangle) {
   return !(height_times_longest > 1e-12 * longest * longest);
 }
 
-bool is_in_range(const Triangle& triangle) {
-  for (const glm::dvec3& vertex : triangle.vertex) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(std::abs(vertex[axis]) <= kMaxCoordinate)) return false;
-    }
-  }
+bool is_point_in_range(const glm::dvec3& point) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(point[axis]) <= kMaxCoordinate)) return false;
   return true;
+}
+
+bool is_in_range(const Triangle& triangle) {
+  return is_point_in_range(triangle.vertex[0]) && is_point_in_range(triangle.vertex[1]) &&
+         is_point_in_range(triangle.vertex[2]);
 }
 
 void keep_used_textures(Scene& scene) {
   std::vector<std::int32_t> new_index(scene.textures.size(), kNoTexture);
   std::array<bool, kTextureCoordinateSets> is_used_set{};
   std::vector<Texture> used;
-  for (Material& material : scene.materials)
+  for (Material& material : scene.materials) {
+    drop_idle_textures(material);
     for_each_texture(material.textures, [&](TextureReference& reference) {
       if (!reference) return;
       is_used_set[std::size_t(reference.coordinate_set)] = true;
@@ -46,6 +49,7 @@ void keep_used_textures(Scene& scene) {
       }
       reference.texture = index;
     });
+  }
   scene.textures = std::move(used);
   for (std::size_t set = 0; set < is_used_set.size(); ++set)
     if (!is_used_set[set]) scene.corners.coordinates[set] = {};

@@ -53,14 +53,15 @@ struct MeshOptions {
 bool is_degenerate(const Triangle& triangle);
 
 /// Whether all coordinates are numbers whose absolute value is at most kMaxCoordinate.
+bool is_point_in_range(const glm::dvec3& point);
 bool is_in_range(const Triangle& triangle);
 
 /// Sets the materials of `mesh` to those of `all` that its triangles use, and renumbers the triangles'
 /// indices into `all` accordingly.
 void keep_used_materials(const std::vector<Material>& all, Mesh& mesh);
 
-/// Drops the textures that no material of the scene uses, and the sets of texture coordinates that no texture
-/// uses.
+/// Drops the textures that no material of the scene uses or that show nothing, and the sets of texture
+/// coordinates that no texture uses.
 void keep_used_textures(Scene& scene);
 
 /// Finds and makes materials by their colour, for meshes whose faces have colours of their own.

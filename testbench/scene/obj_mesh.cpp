@@ -293,16 +293,18 @@ class ObjFaceReader {
       if (begin == number && number[-1] == '-') return false;
       if (begin == number) continue;
       if (slashes == 1 && !content_.coordinates.empty())
-        corner.coordinate = attribute_place(first, begin, coordinates_so_far_, content_.coordinates.size());
+        corner.coordinate = attribute_place({first, std::size_t(begin - first)}, coordinates_so_far_,
+                                            content_.coordinates.size());
       if (slashes == 2 && !content_.normals.empty())
-        corner.normal = attribute_place(first, begin, normals_so_far_, content_.normals.size());
+        corner.normal =
+            attribute_place({first, std::size_t(begin - first)}, normals_so_far_, content_.normals.size());
     }
     return true;
   }
 
-  std::size_t attribute_place(const char* begin, const char* end, std::size_t so_far, std::size_t size) {
+  std::size_t attribute_place(std::string_view text, std::size_t so_far, std::size_t size) {
     std::int64_t index = 0;
-    const bool is_number = std::from_chars(begin, end, index).ec == std::errc();
+    const bool is_number = std::from_chars(text.data(), text.data() + text.size(), index).ec == std::errc();
     const std::size_t place = is_number ? place_of(index, so_far, size) : ObjCorner::kNone;
     if (place == ObjCorner::kNone) note("an index of no texture coordinate or normal is left out");
     return place;

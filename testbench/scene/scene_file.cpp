@@ -160,8 +160,7 @@ Camera moved(Camera camera, const glm::dmat4& transform) {
 TriangleAttributes moved(TriangleAttributes attributes, const glm::dmat4& transform) {
   const glm::dmat3 of_normals = normal_transform(glm::dmat3(transform));
   if (attributes.normals)
-    for (glm::dvec3& normal : *attributes.normals)
-      if (normal != glm::dvec3(0.0)) normal = glm::normalize(of_normals * normal);
+    for (glm::dvec3& normal : *attributes.normals) normal = unit_or_zero(of_normals * normal);
   return attributes;
 }
 
@@ -191,7 +190,11 @@ void add_mesh(const TableReader& table, const std::filesystem::path& directory, 
   scene.degenerate_triangles += mesh.degenerate_triangles;
   scene.notes.add(mesh.notes);
   scene.triangles.reserve(scene.triangles.size() + mesh.triangles.size());
-  for (const Light& light : mesh.lights) scene.lights.push_back(moved(light, transform));
+  for (const Light& light : mesh.lights) {
+    scene.lights.push_back(moved(light, transform));
+    if (!is_point_in_range(scene.lights.back().position))
+      table.fail_at("scale", "a transform that moves a light out of range", "coordinates of at most 1e100");
+  }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     Triangle triangle = mesh.triangles[i];
     triangle.material += first_material;

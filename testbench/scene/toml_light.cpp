@@ -1,7 +1,5 @@
 #include "testbench/scene/toml_light.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "testbench/texture/radiance_image.hpp"
@@ -43,8 +41,7 @@ Environment read_environment(const TableReader& table, const std::filesystem::pa
 glm::dvec3 read_direction(const TableReader& table) {
   const glm::dvec3 direction = table.vector("direction");
   if (direction == glm::dvec3(0.0)) table.fail_at("direction", "a zero vector", "another vector");
-  return glm::normalize(direction /
-                        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)}));
+  return unit_or_zero(direction);
 }
 
 void read_cone(const TableReader& table, Light& light) {
@@ -115,7 +112,7 @@ void read_toml_lights(const toml::table& root, const std::filesystem::path& file
 
 Light moved(Light light, const glm::dmat4& transform) {
   light.position = glm::dvec3(transform * glm::dvec4(light.position, 1.0));
-  light.direction = glm::normalize(glm::dmat3(transform) * light.direction);
+  light.direction = unit_or_zero(glm::dmat3(transform) * light.direction);
   return light;
 }
 

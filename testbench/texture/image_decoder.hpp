@@ -8,7 +8,7 @@
 namespace testbench {
 
 /// Decodes a PNG or JPEG file of 8 bits a channel or fewer; which of them it is, its first bytes say. Colour
-/// profiles and gamma chunks are ignored, as glTF 2.0 demands (section 3.8.3); a PNG's palette and
+/// profiles and gamma chunks are ignored, see glTF 2.0, section 3.8.3; a PNG's palette and
 /// transparent colour become RGB and alpha.
 /// @param where the file or part of a file, in messages
 /// Throws InputError for bytes that are neither, cut off or damaged, for 16 bits a channel, CMYK, or a size

@@ -51,8 +51,9 @@ class GltfMaterialTest : public test_support::DirectoryFixture {
   Mesh load(const GltfBuilder& file) {
     write("a.bin", file.bytes);
     const auto path = write("a.gltf", file.root.dump());
-    textures_ = std::make_shared<testbench::TextureStore>();
-    return testbench::load_gltf(path, {testbench::FileReach(directory_), std::nullopt, textures_}).mesh;
+    const testbench::MeshOptions options{testbench::FileReach(directory_), std::nullopt};
+    textures_ = options.textures;
+    return testbench::load_gltf(path, options).mesh;
   }
   Material material(const json& source) { return load(file_of(source)).materials.at(0); }
   Material extended(const char* name, const json& content) {

@@ -142,6 +142,18 @@ TEST_F(MtlMaterialTest, TexturesHaveSlotsEncodingsAndAreReadOnce) {
   EXPECT_EQ(scene.corners.coordinates[0].at(0)[2], glm::dvec2(0, 0));  // vt 0 1 is the upper left
 }
 
+TEST_F(MtlMaterialTest, TexturesOfPhysicalKeywordsMultiplyOne) {
+  write_image("t.png", {1, 2, 3});
+  const Material metal = material("Ks 1 0 0\nNs 30\nmap_Pm t.png\nmap_Pr t.png\n");
+  EXPECT_EQ(metal.metallic, 1.0);
+  EXPECT_EQ(metal.roughness, 1.0);
+  EXPECT_EQ(metal.specular_colour, glm::dvec3(1.0));
+  EXPECT_EQ(material("Pm 0.5\nmap_Pm t.png\nPr 0.25\nmap_Pr t.png\n").metallic, 0.5);
+  EXPECT_EQ(material("map_Pr t.png\nPr 0.25\n").roughness, 0.25);
+  EXPECT_EQ(material("map_Pm no.png\n").metallic, 0.0);
+  EXPECT_FALSE(material("map_Pr t.png\nPr 0\n").textures.roughness);  // shows nothing
+}
+
 TEST_F(MtlMaterialTest, OpacityMapsTakeAlphaIfThereIsOne) {
   write_image("rgb.png", {1, 2, 3});
   test_support::PngContent content;

@@ -16,7 +16,7 @@
 /// Metal and varnish are GGX with Schlick's reflectance, the dielectric GGX with Fresnel's. What single
 /// scattering loses in metal comes back as a lobe of its own (Kulla and Conty, "Revisiting Physically Based
 /// Shading at Imageworks", SIGGRAPH course 2017). Below varnish the diffuse lobe takes it, by the same
-/// construction. In a rough dielectric it is lost (docs/how-to/add-a-material.md has the figures).
+/// construction. In a rough boundary between two media it is lost (docs/materials.md has the figures).
 namespace path_tracer {
 
 struct ShadingPoint {

@@ -63,7 +63,7 @@ inline FacetSplit split_at_facet(const Bsdf& bsdf, const poly<double>& cosine) {
   const poly<double> refracted = base.surface.inverse_eta * base.surface.inverse_eta;
   const poly<double> compression =
       bsdf.config.lobes.thin_glass ? cn::select(bsdf.material.thin, poly<double>(1.0), refracted) : refracted;
-  return {reflectance, transmitted * compression, reflected / cn::max(sum, poly<double>(1e-30))};
+  return {reflectance, transmitted * compression, reflected / keep_positive(sum)};
 }
 
 /// The facet normal that reflects or refracts the viewer into the light, and the cosines with it.
@@ -86,7 +86,6 @@ inline Facet reflecting_facet(const Bsdf& bsdf, const LightSide& light) {
 
 /// Thin sheets transmit what they would reflect to the mirrored direction.
 inline Facet reflecting_or_refracting_facet(const Bsdf& bsdf, const LightSide& light) {
-  constexpr double kNotZero = 1e-60;
   const ShadingPoint& point = bsdf.point;
   const bool thin = bsdf.config.lobes.thin_glass;
   const mask refracts = thin ? light.transmits & !bsdf.material.thin : light.transmits;
@@ -96,7 +95,7 @@ inline Facet reflecting_or_refracting_facet(const Bsdf& bsdf, const LightSide& l
            : light.to_light;
   const poly<double> scale = cn::select(refracts, bsdf.terms.specular.surface.eta, poly<double>(1.0));
   const HalfVector half = half_vector(point.to_viewer + to_light * scale, point.normal);
-  const poly<double> length = cn::sqrt(cn::max(half.length_squared, poly<double>(kNotZero)));
+  const poly<double> length = cn::sqrt(keep_positive(half.length_squared));
   const poly<double> outward = cn::flip_sign(1.0 / length, half.along);
   const poly<double> refracting = cn::min(dot(half.direction, point.to_viewer) * outward, poly<double>(1.0));
   return {half, cn::select(refracts, refracting, cosine_of_half_angle(length)),
@@ -130,8 +129,8 @@ inline LobeValue evaluate_rough_base(const Bsdf& bsdf, const LightSide& light, c
   const poly<double> cosine = cn::max(facet.cos_viewer, poly<double>(kLeastCosine));
   const FacetSplit split = split_at_facet(bsdf, cosine);
   const poly<double> eta_squared = base.surface.eta * base.surface.eta;
-  const poly<double> refraction = cosine * cn::abs(facet.cos_light) * eta_squared /
-                                  cn::max(facet.half.length_squared, poly<double>(1e-60));
+  const poly<double> refraction =
+      cosine * cn::abs(facet.cos_light) * eta_squared / keep_positive(facet.half.length_squared);
   const poly<double> jacobian = cn::select(facet.refracts, refraction, poly<double>(0.25));
   const poly<double> used = cn::select(possible, jacobian, poly<double>(0.0));
   const poly<double> share = cn::select(light.transmits, 1.0 - split.reflected_share, split.reflected_share);
@@ -165,8 +164,7 @@ inline GrayValue evaluate_coat(const Bsdf& bsdf, const LightSide& light, const F
 inline GrayValue evaluate_sheen_layer(const Bsdf& bsdf, const LightSide& light, const Facet& facet) {
   const SheenLayer& sheen = bsdf.terms.sheen;
   const poly<double> raw_albedo = raw_sheen_albedo(sheen.fibres, light.cosine);
-  const poly<double> squared_sine =
-      facet.half.across_squared / cn::max(facet.half.length_squared, poly<double>(1e-60));
+  const poly<double> squared_sine = facet.half.across_squared / keep_positive(facet.half.length_squared);
   return {light.cosine * evaluate_sheen(sheen.fibres, squared_sine, bsdf.terms.cos_viewer, light.cosine,
                                         sheen.raw_albedo_viewer, raw_albedo),
           1.0 / (2.0 * kPi), 1.0 - sheen_albedo(sheen, raw_albedo)};

@@ -44,7 +44,7 @@ inline CosinePart cosine_part(const Lobes& lobes, const Material& material, cons
     assign(base.behind, material.base_color * frosted);
     const poly<double> behind = largest_channel(base.behind);
     const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
-    base.share_behind.assign_all_lanes(behind / cn::max(front + behind, poly<double>(1e-30)));
+    base.share_behind.assign_all_lanes(behind / keep_positive(front + behind));
   }
   return {base, albedo};
 }
@@ -85,7 +85,7 @@ inline SamplingShares sampling_shares(const Lobes& lobes, const BsdfTerms& terms
   const poly<double> coat = add(lobes.coat, [&] { return terms.coat.albedo_viewer; });
   const poly<double> sheen =
       add(lobes.sheen, [&] { return below_coat(sheen_albedo(terms.sheen, terms.sheen.raw_albedo_viewer)); });
-  const poly<double> scale = 1.0 / cn::max(sum.total(), poly<double>(1e-30));
+  const poly<double> scale = 1.0 / keep_positive(sum.total());
   const auto share = [&](bool present, const poly<double>& albedo) {
     return present ? albedo * scale : albedo;
   };

@@ -8,10 +8,12 @@ namespace path_tracer {
 
 struct BsdfSample {
   Direction3 direction;
-  Rgb weight;        ///< BSDF * cosine / pdf; 0 ends the path
-  poly<double> pdf;  ///< per solid angle, as evaluate_bsdf() gives it; 0 for a single direction
-  mask is_delta;     ///< the direction has no density: lights are not sampled towards it
-  mask transmits;    ///< the segment goes on behind the surface
+  Rgb weight;  ///< BSDF * cosine / pdf; 0 ends the path
+  /// Per solid angle, as evaluate_bsdf() gives it. 0 for a single direction, and for purely diffuse materials
+  /// without BsdfConfig::diffuse_pdf.
+  poly<double> pdf;
+  mask is_delta;   ///< the direction has no density: lights are not sampled towards it
+  mask transmits;  ///< the segment goes on behind the surface
 };
 
 namespace bsdf_detail {
@@ -198,13 +200,12 @@ inline DeltaSample smooth_base_sample(const Bsdf& bsdf, const WayToSample& way, 
   const Rgb value = lobes.transmissive()
                         ? cn::select(departure.transmits, split.transmittance, split.reflectance)
                         : split.reflectance;
-  return {value * (1.0 / cn::max(probability, poly<double>(1e-30))), chosen};
+  return {value * (1.0 / keep_positive(probability)), chosen};
 }
 
 inline DeltaSample smooth_coat_sample(const Bsdf& bsdf, const WayToSample& way, const Departure& departure) {
   const CoatLayer& coat = bsdf.terms.coat;
-  const poly<double> weight =
-      coat.weight * coat_fresnel(departure.cosine) / cn::max(bsdf.shares.coat, poly<double>(1e-30));
+  const poly<double> weight = coat.weight * coat_fresnel(departure.cosine) / keep_positive(bsdf.shares.coat);
   return {{weight, weight, weight}, way.coat & (coat.alpha == 0.0)};
 }
 

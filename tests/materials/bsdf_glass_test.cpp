@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "tests/support/material_bench.hpp"
+#include "tests/materials/material_bench.hpp"
 
 /// Smooth and rough glass against Fresnel's equations, closed forms and the formulas of textbooks.
-namespace materials_glass_test {
+namespace bsdf_glass_test {
 
 using path_tracer::BsdfConfig;
 using path_tracer::Lobes;
@@ -255,4 +255,4 @@ TEST_F(MaterialsGlass, ValuesAreTheTextbooks) {
   EXPECT_GT(positive, 500);
 }
 
-}  // namespace materials_glass_test
+}  // namespace bsdf_glass_test

@@ -3,12 +3,12 @@
 #include <limits>
 
 #include "tests/support/chi_square.hpp"
-#include "tests/support/material_settings.hpp"
-#include "tests/support/polar_cells.hpp"
+#include "tests/materials/material_settings.hpp"
+#include "tests/materials/polar_cells.hpp"
 #include "tests/support/statistics.hpp"
 
 /// Samples, densities and values of BSDFs against each other.
-namespace materials_sampling_test {
+namespace bsdf_sampling_test {
 
 using path_tracer::BsdfConfig;
 using path_tracer::Lobes;
@@ -372,4 +372,4 @@ TEST_F(MaterialsSampling, NothingIsInfiniteOrNotANumber) {
           }
 }
 
-}  // namespace materials_sampling_test
+}  // namespace bsdf_sampling_test

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "tests/support/material_bench.hpp"
+#include "tests/materials/material_bench.hpp"
 
 /// BSDFs against closed forms and published integrals: energy, reciprocity, Fresnel's equations.
-namespace materials_energy_test {
+namespace bsdf_energy_test {
 
 using cn::poly;
 using path_tracer::BsdfConfig;
@@ -289,4 +289,4 @@ TEST_F(MaterialsEnergy, AbsorptionIsBeersLaw) {
   EXPECT_NEAR(z.front(), 0, 1e-30);
 }
 
-}  // namespace materials_energy_test
+}  // namespace bsdf_energy_test

@@ -1,11 +1,11 @@
 #include <sstream>
 
 #include "firmware/path_tracer/materials/lobe_table.hpp"
-#include "tests/support/material_bench.hpp"
+#include "tests/materials/material_bench.hpp"
 
 /// What each lobe costs: the instructions that the PE array issues for all PEs. docs/materials.md has the
 /// cycles. After an intended change, copy what the test found, and run it again.
-namespace materials_cost_test {
+namespace bsdf_cost_test {
 
 using cn::InstructionClass;
 using path_tracer::BsdfConfig;
@@ -170,4 +170,4 @@ TEST_F(MaterialsCost, TheTableListsEveryLobe) {
   }
 }
 
-}  // namespace materials_cost_test
+}  // namespace bsdf_cost_test

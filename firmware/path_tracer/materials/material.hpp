@@ -42,7 +42,7 @@ struct BsdfConfig {
   bool shading_normals = false;
   /// Samples of purely diffuse materials get their density. All others have one anyway.
   bool diffuse_pdf = false;
-  /// The control unit skips coat and sheen where no PE's material has them.
+  /// The control unit skips specular lobes, coat and sheen where no PE's material has them.
   bool skips_absent_lobes = false;
 };
 

@@ -76,6 +76,12 @@ inline Cap facet_cap(const Bsdf& bsdf, const WayToSample& way) {
   return {alpha, stretch_viewer(bsdf.point.to_viewer, bsdf.point.normal, cosine, alpha, size)};
 }
 
+/// Turns a direction around the z axis to one around the normal.
+inline Direction3 turn_to(const Direction3& normal, const Direction3& direction) {
+  const Tangents frame = tangents(normal);
+  return frame.first * direction.x + frame.second * direction.y + normal * direction.z;
+}
+
 /// Samples a facet's normal as the viewer sees them (Dupuy and Benyoub, "Sampling Visible GGX Normals with
 /// Spherical Caps", CGF 42(8), 2023), and by the same instructions a cosine-distributed direction: the
 /// viewer's place on the whole sphere is the normal then. The latter is sample_cosine() to the bit.
@@ -83,8 +89,8 @@ inline Direction3 axis_of_cap(const Bsdf& bsdf, const WayToSample& way, const Ca
                               const Direction3& on_cap) {
   const Direction3& normal = bsdf.point.normal;
   const bool spheres = bsdf.config.lobes.cosine() || bsdf.config.lobes.sheen;
-  const Tangents frame = tangents(normal);
-  const Direction3 turned = frame.first * on_cap.x + frame.second * on_cap.y + normal * on_cap.z;
+  const Direction3 turned = unless_absent(
+      bsdf.config, [&] { return way.specular | way.coat; }, on_cap, [&] { return turn_to(normal, on_cap); });
   const Direction3 place =
       spheres ? cn::select(way.sphere, normal, cap.viewer.direction) : cap.viewer.direction;
   const Direction3 half = place + (spheres ? cn::select(way.sphere, on_cap, turned) : turned);
@@ -97,7 +103,9 @@ inline Cap cap_to_sample(const Bsdf& bsdf, const WayToSample& way) {
   const Lobes& lobes = bsdf.config.lobes;
   const poly<double> one = 1.0;
   if (!lobes.rough_specular() && !lobes.coat) return {one, {bsdf.point.normal, one}};
-  const Cap cap = facet_cap(bsdf, way);
+  const Cap cap = unless_absent(
+      bsdf.config, [&] { return way.specular | way.coat; }, Cap{one, {bsdf.point.normal, one}},
+      [&] { return facet_cap(bsdf, way); });
   if (!lobes.cosine() && !lobes.sheen) return cap;
   return {cn::select(way.sphere, one, cap.alpha),
           {cap.viewer.direction, cn::select(way.sphere, one, cap.viewer.height)}};
@@ -157,25 +165,33 @@ inline mask goes_behind(const Bsdf& bsdf, const WayToSample& way, const poly<dou
   return bsdf.config.lobes.sheen ? behind & !way.sheen : behind;
 }
 
-inline Departure depart(const Bsdf& bsdf, const WayToSample& way, const Direction3& axis,
-                        const poly<double>& choice) {
+/// Reflects or transmits at a facet. PEs that sample the sphere transmit nothing.
+inline Departure depart_from_facet(const Bsdf& bsdf, const WayToSample& way, const Direction3& axis,
+                                   const poly<double>& choice) {
   const Lobes& lobes = bsdf.config.lobes;
-  const mask none(cn::mask_from_bits(0));
-  if (!lobes.specular() && !lobes.coat) return {axis, none, {}, {}};
   const poly<double> cosine = clamp_cosine(dot(axis, bsdf.point.to_viewer));
   const Direction3 reflected = reflect(bsdf.point.to_viewer, axis, cosine);
   const bool splits = lobes.smooth_specular() || lobes.transmissive();
   const FacetSplit split = splits ? split_at_facet(bsdf, cosine) : FacetSplit{};
-  const mask through =
-      lobes.transmissive() ? way.specular & (choice >= bsdf.shares.specular * split.reflected_share) : none;
-  const Direction3 by_facet = lobes.transmissive()
-                                  ? cn::select(through, transmit(bsdf, axis, reflected, cosine), reflected)
-                                  : reflected;
-  if (!lobes.cosine() && !lobes.sheen) return {by_facet, through, split, cosine};
-  if (!lobes.frosted_sheets()) return {cn::select(way.sphere, axis, by_facet), through, split, cosine};
-  const mask behind = goes_behind(bsdf, way, choice);
-  const Direction3 on_either_side = cn::select(behind, axis * -1.0, axis);
-  return {cn::select(way.sphere, on_either_side, by_facet), through | behind, split, cosine};
+  if (!lobes.transmissive()) return {reflected, mask(cn::mask_from_bits(0)), split, cosine};
+  const mask through = way.specular & (choice >= bsdf.shares.specular * split.reflected_share);
+  return {cn::select(through, transmit(bsdf, axis, reflected, cosine), reflected), through, split, cosine};
+}
+
+inline Departure depart(const Bsdf& bsdf, const WayToSample& way, const Direction3& axis,
+                        const poly<double>& choice) {
+  const Lobes& lobes = bsdf.config.lobes;
+  const Departure from_sphere{axis, mask(cn::mask_from_bits(0)), {}, {}};
+  if (!lobes.specular() && !lobes.coat) return from_sphere;
+  const Departure by_facet = unless_absent(
+      bsdf.config, [&] { return way.specular | way.coat; }, from_sphere,
+      [&] { return depart_from_facet(bsdf, way, axis, choice); });
+  if (!lobes.cosine() && !lobes.sheen) return by_facet;
+  const mask behind = lobes.frosted_sheets() ? goes_behind(bsdf, way, choice) : mask();
+  const Direction3 of_sphere = lobes.frosted_sheets() ? cn::select(behind, axis * -1.0, axis) : axis;
+  return {cn::select(way.sphere, of_sphere, by_facet.direction),
+          lobes.frosted_sheets() ? by_facet.transmits | behind : by_facet.transmits, by_facet.split,
+          by_facet.cosine};
 }
 
 /// A sample of a lobe that reflects or refracts into a single direction.

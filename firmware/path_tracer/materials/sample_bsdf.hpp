@@ -299,4 +299,14 @@ inline BsdfSample sample_bsdf(const Bsdf& bsdf, const UniformPair& uniform, cons
           cn::select(usable, sample.pdf, poly<double>(0.0)), sample.is_delta, sample.transmits};
 }
 
+/// eta^2 where the sample is refracted, else 1. Throughput times the product of these along a path does not
+/// shrink because the path is inside glass; Russian roulette should look at it.
+inline poly<double> roulette_factor(const Bsdf& bsdf, const BsdfSample& sample) {
+  const Lobes& lobes = bsdf.config.lobes;
+  if (!lobes.transmissive()) return 1.0;
+  const poly<double>& eta = bsdf.terms.specular.surface.eta;
+  const mask refracts = lobes.thin_glass ? sample.transmits & !bsdf.material.thin : sample.transmits;
+  return cn::select(refracts, eta * eta, poly<double>(1.0));
+}
+
 }  // namespace path_tracer

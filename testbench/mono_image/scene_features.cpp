@@ -21,6 +21,7 @@ void add_lobes(const Material& material, path_tracer::Lobes& lobes) {
   if (material.metallic > 0 || opaque * material.specular > 0) (smooth ? lobes.mirror : lobes.glossy) = true;
   if (dielectric * material.transmission > 0) {
     (smooth ? lobes.glass : lobes.rough_glass) = true;
+    if (material.is_thin) lobes.thin_glass = true;
     if (!material.is_thin && std::isfinite(material.attenuation_distance)) lobes.absorption = true;
   }
   if (material.clearcoat > 0) lobes.coat = true;

@@ -45,7 +45,7 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
       const poly<double> ior = record.get(&MaterialRecord::ior);
       material.transmission.assign_all_lanes(record.get(&MaterialRecord::transmission));
       material.eta.assign_all_lanes(cn::select(front, ior, 1.0 / ior));
-      material.thin = record.get(&MaterialRecord::thin) != 0;
+      if (lobes.thin_glass) material.thin = record.get(&MaterialRecord::thin) != 0;
     }
   }
   if (lobes.coat) {
@@ -186,7 +186,7 @@ inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& ver
                                 : lobe_number(arguments.sampler, arguments.seed, pixel, number, depth);
   const BsdfSample sample = sample_bsdf(vertex.bsdf, random.direction, lobe);
 
-  const poly<double> strongest = largest_channel(sample.weight);
+  const poly<double> strongest = largest_channel(sample.weight) * roulette_factor(vertex.bsdf, sample);
   const mask safe = depth < arguments.roulette_start;
   const poly<double> survival =
       cn::select(safe, poly<double>(1.0), cn::min(strongest, poly<double>(arguments.max_survival)));

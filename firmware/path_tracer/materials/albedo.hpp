@@ -80,19 +80,25 @@ inline constexpr double kSchlickShareAverage[] = {0.047382917, 0.0155498173, -0.
 
 }  // namespace albedo_detail
 
+/// What a program needs to know of albedos; mono.
+struct AlbedoNeeds {
+  bool rough;  ///< without it, all surfaces are smooth and their albedos exact
+  bool smooth;
+  bool schlick_share;
+};
+
 /// For a width of GGX, the light that single scattering loses or reflects, by direction.
 struct GgxAlbedo {
-  bool is_fitted = false;  ///< without it, all surfaces are smooth and the albedos are exact
-  bool may_be_smooth = false;
   poly<double> scaled_alpha;
   PolyCoefficients<7> loss;
   PolyCoefficients<6> schlick_share;
 };
 
-/// @param alpha 0 where the surface is smooth, which is possible only with `may_be_smooth`
-inline GgxAlbedo ggx_albedo(const poly<double>& alpha, bool may_be_smooth, bool needs_schlick_share) {
-  return {true, may_be_smooth, alpha * 0.7, insert_y(albedo_detail::kLoss, alpha),
-          needs_schlick_share ? insert_y(albedo_detail::kSchlickShare, 1.0 / (1.0 + 16.0 * alpha))
+/// @param alpha 0 where the surface is smooth
+inline GgxAlbedo ggx_albedo(const AlbedoNeeds& needs, const poly<double>& alpha) {
+  if (!needs.rough) return {};
+  return {alpha * 0.7, insert_y(albedo_detail::kLoss, alpha),
+          needs.schlick_share ? insert_y(albedo_detail::kSchlickShare, 1.0 / (1.0 + 16.0 * alpha))
                               : PolyCoefficients<6>{}};
 }
 
@@ -111,33 +117,35 @@ inline poly<double> schlick_albedo(const DirectionalAlbedo& albedo, const poly<d
 }
 
 /// The fitted value, or the exact one where the surface is smooth.
-inline poly<double> fitted_or_smooth(const GgxAlbedo& albedo, const poly<double>& fitted, double smooth) {
-  if (!albedo.may_be_smooth) return fitted;
+inline poly<double> fitted_or_smooth(const AlbedoNeeds& needs, const GgxAlbedo& albedo,
+                                     const poly<double>& fitted, double smooth) {
+  if (!needs.smooth) return fitted;
   return cn::select(albedo.scaled_alpha > 0.0, fitted, poly<double>(smooth));
 }
 
-inline DirectionalAlbedo directional_albedo(const GgxAlbedo& albedo, const poly<double>& cosine,
-                                            bool needs_schlick_share) {
+inline DirectionalAlbedo directional_albedo(const AlbedoNeeds& needs, const GgxAlbedo& albedo,
+                                            const poly<double>& cosine) {
   const poly<double> zero = 0.0;
-  if (!albedo.is_fitted) return {zero, needs_schlick_share ? schlick_weight(cosine) : zero};
+  if (!needs.rough) return {zero, needs.schlick_share ? schlick_weight(cosine) : zero};
   const poly<double> x = cosine / (cosine + albedo.scaled_alpha);
-  const poly<double> loss = fitted_or_smooth(albedo, cn::max(x * value_at(albedo.loss, x), zero), 0.0);
-  if (!needs_schlick_share) return {loss, zero};
-  const poly<double> share = fitted_or_smooth(albedo, cn::max(value_at(albedo.schlick_share, x), zero), 1.0);
+  const poly<double> loss = fitted_or_smooth(needs, albedo, cn::max(x * value_at(albedo.loss, x), zero), 0.0);
+  if (!needs.schlick_share) return {loss, zero};
+  const poly<double> share =
+      fitted_or_smooth(needs, albedo, cn::max(value_at(albedo.schlick_share, x), zero), 1.0);
   return {loss, schlick_weight(cosine) * share};
 }
 
-/// Averages over the cosine-weighted hemisphere; without a Schlick share where none is needed.
-inline DirectionalAlbedo average_albedo(const GgxAlbedo& albedo, const poly<double>& roughness,
-                                        bool needs_schlick_share) {
+/// Averages over the cosine-weighted hemisphere.
+inline DirectionalAlbedo average_albedo(const AlbedoNeeds& needs, const GgxAlbedo& albedo,
+                                        const poly<double>& roughness) {
   constexpr double kAverageSchlickWeight = 1.0 / 21.0;
   const poly<double> zero = 0.0;
-  if (!albedo.is_fitted) return {zero, kAverageSchlickWeight};
+  if (!needs.rough) return {zero, kAverageSchlickWeight};
   const poly<double> loss =
-      fitted_or_smooth(albedo, cn::max(value_at(albedo_detail::kLossAverage, roughness), zero), 0.0);
-  if (!needs_schlick_share) return {loss, zero};
+      fitted_or_smooth(needs, albedo, cn::max(value_at(albedo_detail::kLossAverage, roughness), zero), 0.0);
+  if (!needs.schlick_share) return {loss, zero};
   const poly<double> share = value_at(albedo_detail::kSchlickShareAverage, roughness);
-  return {loss, fitted_or_smooth(albedo, share, kAverageSchlickWeight)};
+  return {loss, fitted_or_smooth(needs, albedo, share, kAverageSchlickWeight)};
 }
 
 }  // namespace path_tracer

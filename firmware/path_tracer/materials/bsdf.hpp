@@ -16,7 +16,7 @@
 /// Metal and varnish are GGX with Schlick's reflectance, the dielectric GGX with Fresnel's. What single
 /// scattering loses in metal comes back as a lobe of its own (Kulla and Conty, "Revisiting Physically Based
 /// Shading at Imageworks", SIGGRAPH course 2017). Below varnish the diffuse lobe takes it, by the same
-/// construction. In a rough dielectric it is lost (docs/how-to/add-a-material.md has the figures).
+/// construction. In a rough boundary between two media it is lost (docs/materials.md has the figures).
 namespace path_tracer {
 
 struct ShadingPoint {
@@ -54,6 +54,11 @@ struct SpecularBase {
   poly<double> f90;           ///< likewise
   poly<double> transmissive;  ///< share of the base
   DielectricSurface surface;
+
+  /// Where it reflects or transmits at all.
+  mask is_present(const Lobes& lobes) const {
+    return (lobes.transmissive() ? f90 + transmissive : f90) > 0.0;
+  }
 };
 
 /// Reflectances with all factors but those of the light's direction.
@@ -93,12 +98,13 @@ inline poly<double> largest_channel(const Rgb& color) {
   return cn::max(color.x, cn::max(color.y, color.z));
 }
 
-/// Runs `body`, or skips it where no PE needs its result. `absent` is what it returns for PEs that do not.
-template <class Value, class Body>
-inline Value unless_absent(const BsdfConfig& config, const mask& present, const Value& absent, Body&& body) {
+/// Runs `body`. A program that skips absent lobes does so only if `present` holds on any PE; `absent` is the
+/// result of the others. Masks in a result are those of `body` on all PEs.
+template <class Value, class Present, class Body>
+inline Value unless_absent(const BsdfConfig& config, Present&& present, const Value& absent, Body&& body) {
   if (!config.skips_absent_lobes) return body();
   Value value = absent;
-  cn::poly_if_any(present, [&] { value = body(); });
+  cn::poly_if_any(present(), [&] { value = body(); });
   return value;
 }
 
@@ -106,6 +112,13 @@ namespace bsdf_detail {
 
 /// The coat's reflectance at normal incidence (KHR_materials_clearcoat).
 inline constexpr double kCoatF0 = 0.04;
+
+/// Coats are rough or smooth.
+inline constexpr AlbedoNeeds kCoatAlbedo{true, true, true};
+
+constexpr AlbedoNeeds base_albedo_needs(const Lobes& lobes) {
+  return {lobes.rough_specular(), lobes.smooth_specular(), lobes.diffuse};
+}
 
 /// Least factor by which coupling divides: fits err by 0.003, and their product must stay small beside it.
 inline constexpr double kLeastCoupling = 0.01;
@@ -196,9 +209,10 @@ inline poly<double> frosted_scattering(const Material& material, const poly<doub
 
 inline CoatLayer coat_layer(const Material& material, const poly<double>& cos_viewer) {
   const poly<double> alpha = alpha_or_smooth(material.coat_roughness);
-  const GgxAlbedo albedo = ggx_albedo(alpha, true, true);
+  const GgxAlbedo albedo = ggx_albedo(kCoatAlbedo, alpha);
   return {material.coat, alpha, ggx_size(alpha * alpha, cos_viewer),
-          material.coat * schlick_albedo(directional_albedo(albedo, cos_viewer, true), kCoatF0, 1.0), albedo};
+          material.coat * schlick_albedo(directional_albedo(kCoatAlbedo, albedo, cos_viewer), kCoatF0, 1.0),
+          albedo};
 }
 
 inline SheenLayer sheen_layer(const Material& material, const poly<double>& cos_viewer) {

@@ -63,7 +63,7 @@ inline FacetSplit split_at_facet(const Bsdf& bsdf, const poly<double>& cosine) {
   const poly<double> refracted = base.surface.inverse_eta * base.surface.inverse_eta;
   const poly<double> compression =
       bsdf.config.lobes.thin_glass ? cn::select(bsdf.material.thin, poly<double>(1.0), refracted) : refracted;
-  return {reflectance, transmitted * compression, reflected / cn::max(sum, poly<double>(1e-30))};
+  return {reflectance, transmitted * compression, reflected / keep_positive(sum)};
 }
 
 /// The facet normal that reflects or refracts the viewer into the light, and the cosines with it.
@@ -86,7 +86,6 @@ inline Facet reflecting_facet(const Bsdf& bsdf, const LightSide& light) {
 
 /// Thin sheets transmit what they would reflect to the mirrored direction.
 inline Facet reflecting_or_refracting_facet(const Bsdf& bsdf, const LightSide& light) {
-  constexpr double kNotZero = 1e-60;
   const ShadingPoint& point = bsdf.point;
   const bool thin = bsdf.config.lobes.thin_glass;
   const mask refracts = thin ? light.transmits & !bsdf.material.thin : light.transmits;
@@ -96,7 +95,7 @@ inline Facet reflecting_or_refracting_facet(const Bsdf& bsdf, const LightSide& l
            : light.to_light;
   const poly<double> scale = cn::select(refracts, bsdf.terms.specular.surface.eta, poly<double>(1.0));
   const HalfVector half = half_vector(point.to_viewer + to_light * scale, point.normal);
-  const poly<double> length = cn::sqrt(cn::max(half.length_squared, poly<double>(kNotZero)));
+  const poly<double> length = cn::sqrt(keep_positive(half.length_squared));
   const poly<double> outward = cn::flip_sign(1.0 / length, half.along);
   const poly<double> refracting = cn::min(dot(half.direction, point.to_viewer) * outward, poly<double>(1.0));
   return {half, cn::select(refracts, refracting, cosine_of_half_angle(length)),
@@ -130,8 +129,8 @@ inline LobeValue evaluate_rough_base(const Bsdf& bsdf, const LightSide& light, c
   const poly<double> cosine = cn::max(facet.cos_viewer, poly<double>(kLeastCosine));
   const FacetSplit split = split_at_facet(bsdf, cosine);
   const poly<double> eta_squared = base.surface.eta * base.surface.eta;
-  const poly<double> refraction = cosine * cn::abs(facet.cos_light) * eta_squared /
-                                  cn::max(facet.half.length_squared, poly<double>(1e-60));
+  const poly<double> refraction =
+      cosine * cn::abs(facet.cos_light) * eta_squared / keep_positive(facet.half.length_squared);
   const poly<double> jacobian = cn::select(facet.refracts, refraction, poly<double>(0.25));
   const poly<double> used = cn::select(possible, jacobian, poly<double>(0.0));
   const poly<double> share = cn::select(light.transmits, 1.0 - split.reflected_share, split.reflected_share);
@@ -157,7 +156,7 @@ inline GrayValue evaluate_coat(const Bsdf& bsdf, const LightSide& light, const F
   const poly<double> size_light = ggx_size(alpha_squared, light.cosine);
   const poly<double> visibility = ggx_visibility(cos_viewer, coat.size_viewer, light.cosine, size_light);
   const poly<double> albedo =
-      coat.weight * schlick_albedo(directional_albedo(coat.albedo, light.cosine, true), kCoatF0, 1.0);
+      coat.weight * schlick_albedo(directional_albedo(kCoatAlbedo, coat.albedo, light.cosine), kCoatF0, 1.0);
   return {coat.weight * coat_fresnel(facet.cos_viewer) * distribution * light.cosine * visibility,
           2.0 * distribution / (cos_viewer + coat.size_viewer), 1.0 - albedo};
 }
@@ -165,8 +164,7 @@ inline GrayValue evaluate_coat(const Bsdf& bsdf, const LightSide& light, const F
 inline GrayValue evaluate_sheen_layer(const Bsdf& bsdf, const LightSide& light, const Facet& facet) {
   const SheenLayer& sheen = bsdf.terms.sheen;
   const poly<double> raw_albedo = raw_sheen_albedo(sheen.fibres, light.cosine);
-  const poly<double> squared_sine =
-      facet.half.across_squared / cn::max(facet.half.length_squared, poly<double>(1e-60));
+  const poly<double> squared_sine = facet.half.across_squared / keep_positive(facet.half.length_squared);
   return {light.cosine * evaluate_sheen(sheen.fibres, squared_sine, bsdf.terms.cos_viewer, light.cosine,
                                         sheen.raw_albedo_viewer, raw_albedo),
           1.0 / (2.0 * kPi), 1.0 - sheen_albedo(sheen, raw_albedo)};
@@ -178,7 +176,9 @@ inline LobeValue evaluate_cosine_base(const Bsdf& bsdf, const LightSide& light) 
   const CosineBase& base = bsdf.terms.cosine;
   const poly<double> pdf = light.cosine * (1.0 / kPi);
   if (!lobes.specular()) return {base.diffuse * pdf, pdf};
-  const DirectionalAlbedo albedo = directional_albedo(bsdf.terms.albedo, light.cosine, lobes.diffuse);
+  const DirectionalAlbedo albedo = unless_absent(
+      bsdf.config, [&] { return bsdf.terms.specular.is_present(lobes); }, DirectionalAlbedo{0.0, 0.0},
+      [&] { return directional_albedo(base_albedo_needs(lobes), bsdf.terms.albedo, light.cosine); });
   RgbSum reflectance;
   if (lobes.diffuse)
     reflectance.add(base.diffuse *
@@ -207,7 +207,9 @@ inline LobeValue evaluate_base(const Bsdf& bsdf, const LightSide& light, const F
   RgbSum value;
   Sum pdf;
   if (lobes.rough_specular()) {
-    const LobeValue rough = evaluate_rough_base(bsdf, light, facet);
+    const LobeValue rough = unless_absent(
+        bsdf.config, [&] { return bsdf.terms.specular.is_present(lobes); }, LobeValue{none, 0.0},
+        [&] { return evaluate_rough_base(bsdf, light, facet); });
     const poly<double> weighed = share(rough.pdf, bsdf.shares.specular);
     const bool only_front = lobes.transmissive() && !lobes.rough_glass;
     value.add(only_front ? cn::select(reflects, rough.value, none) : rough.value);
@@ -239,8 +241,9 @@ inline EvaluatedBsdf evaluate_layers(const Bsdf& bsdf, const LightSide& light, c
   const bool has_base = lobes.cosine() || lobes.rough_specular();
   LayerTransmittance layers{1.0, 1.0};
   if (lobes.sheen) {
-    const GrayValue sheen = unless_absent(config, bsdf.terms.sheen.strongest > 0.0, absent,
-                                          [&] { return evaluate_sheen_layer(bsdf, light, facet); });
+    const GrayValue sheen = unless_absent(
+        config, [&] { return bsdf.terms.sheen.strongest > 0.0; }, absent,
+        [&] { return evaluate_sheen_layer(bsdf, light, facet); });
     layers.sheen.assign_all_lanes(cn::min(bsdf.terms.layers_viewer.sheen, sheen.transmittance));
     const Rgb own = material.sheen_color * in_front(sheen.value);
     assign(value, has_base ? value * layers.sheen + own : own);
@@ -248,13 +251,25 @@ inline EvaluatedBsdf evaluate_layers(const Bsdf& bsdf, const LightSide& light, c
     pdf.assign_all_lanes(has_base ? pdf + own_pdf : own_pdf);
   }
   if (lobes.coat) {
-    const GrayValue coat =
-        unless_absent(config, material.coat > 0.0, absent, [&] { return evaluate_coat(bsdf, light, facet); });
+    const GrayValue coat = unless_absent(
+        config, [&] { return material.coat > 0.0; }, absent,
+        [&] { return evaluate_coat(bsdf, light, facet); });
     layers.coat.assign_all_lanes(cn::min(bsdf.terms.layers_viewer.coat, coat.transmittance));
     assign(value, plus(value * layers.coat, in_front(coat.value)));
     pdf.assign_all_lanes(pdf + in_front(coat.pdf * bsdf.shares.coat));
   }
   return {{value, pdf}, light, layers};
+}
+
+/// Where a lobe other than the cosine's is present.
+inline mask has_facets(const Bsdf& bsdf) {
+  const Lobes& lobes = bsdf.config.lobes;
+  Sum presence;
+  if (lobes.rough_specular()) presence.add(bsdf.terms.specular.f90);
+  if (lobes.rough_glass) presence.add(bsdf.terms.specular.transmissive);
+  if (lobes.coat) presence.add(bsdf.material.coat);
+  if (lobes.sheen) presence.add(bsdf.terms.sheen.strongest);
+  return presence.total() > 0.0;
 }
 
 /// Lambert's law needs no guard: a cosine of 0 makes all 0.
@@ -269,7 +284,10 @@ inline EvaluatedBsdf evaluate(const Bsdf& bsdf, const Direction3& to_light) {
   const LightSide light = light_side(bsdf, to_light);
   const mask reflects = lobes.transmissive() ? !light.transmits : mask();
   const bool needs_facet = lobes.rough_specular() || lobes.coat || lobes.sheen;
-  const Facet facet = needs_facet ? facet_between(bsdf, light) : Facet{};
+  const Facet facet = needs_facet ? unless_absent(
+                                        bsdf.config, [&] { return has_facets(bsdf); }, Facet{},
+                                        [&] { return facet_between(bsdf, light); })
+                                  : Facet{};
   const LobeValue base = evaluate_base(bsdf, light, facet, reflects);
   const EvaluatedBsdf all = evaluate_layers(bsdf, light, facet, reflects, base);
   const Rgb none{0.0, 0.0, 0.0};

@@ -16,7 +16,7 @@ struct BsdfConfig {
   bool shading_normals = false;
   /// Samples of purely diffuse materials get their density. All others have one anyway.
   bool diffuse_pdf = false;
-  /// The control unit skips coat and sheen where no PE's material has them.
+  /// The control unit skips specular lobes, coat and sheen where no PE's material has them.
   bool skips_absent_lobes = false;
 };
 
@@ -30,7 +30,7 @@ struct Material {
   poly<double> f90;             ///< the same at grazing incidence: 1, or 0 for a purely diffuse surface
   poly<double> transmission;    ///< share of the rest that is transmissive
   poly<double> eta;             ///< refractive index behind the surface / on the ray's side; positive
-  mask thin;                    ///< transmits without refraction, as both sides of a thin sheet do together
+  mask thin;                    ///< transmits without refraction; eta is the sheet's, seen from either side
   poly<double> coat;            ///< weight of the clear coat
   poly<double> coat_roughness;  ///< square root of its alpha
   Rgb sheen_color;
@@ -52,6 +52,11 @@ inline constexpr double kLeastCosine = 1e-12;
 
 inline poly<double> clamp_cosine(const poly<double>& cosine) {
   return cn::min(cn::max(cosine, poly<double>(kLeastCosine)), poly<double>(1.0));
+}
+
+/// Keeps a divisor or the argument of a root that cannot be negative from being 0.
+inline poly<double> keep_positive(const poly<double>& value) {
+  return cn::max(value, poly<double>(1e-60));
 }
 
 /// Adds terms of which a program has some: the first costs no instruction.

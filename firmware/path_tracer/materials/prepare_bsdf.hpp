@@ -26,27 +26,42 @@ struct CosinePart {
   GgxAlbedo albedo;
 };
 
-inline CosinePart cosine_part(const Lobes& lobes, const Material& material, const BaseShares& shares,
-                              const poly<double>& alpha, const poly<double>& cos_viewer) {
-  if (!lobes.cosine()) return {};
-  if (!lobes.specular()) return {{material.base_color, {}, {}, {}}, {}};
-  const GgxAlbedo albedo =
-      lobes.rough_specular() ? ggx_albedo(alpha, lobes.smooth_specular(), lobes.diffuse) : GgxAlbedo{};
-  const DirectionalAlbedo viewer = directional_albedo(albedo, cos_viewer, lobes.diffuse);
-  const DirectionalAlbedo average = average_albedo(albedo, material.roughness, lobes.diffuse);
+/// Adds what frosted sheets scatter to what metal does.
+inline void add_frosted(const Lobes& lobes, const Material& material, const poly<double>& frosted,
+                        CosineBase& base) {
+  assign(base.multiple, lobes.glossy ? plus(base.multiple, frosted) : Rgb{frosted, frosted, frosted});
+  assign(base.behind, material.base_color * frosted);
+  const poly<double> behind = largest_channel(base.behind);
+  const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
+  base.share_behind.assign_all_lanes(behind / keep_positive(front + behind));
+}
+
+inline CosinePart cosine_part_under_specular(const Lobes& lobes, const Material& material,
+                                             const BaseShares& shares, const poly<double>& alpha,
+                                             const poly<double>& cos_viewer) {
+  const AlbedoNeeds needs = base_albedo_needs(lobes);
+  const GgxAlbedo albedo = ggx_albedo(needs, alpha);
+  const DirectionalAlbedo viewer = directional_albedo(needs, albedo, cos_viewer);
+  const DirectionalAlbedo average = average_albedo(needs, albedo, material.roughness);
   CosineBase base{};
   if (lobes.diffuse)
     assign(base.diffuse, material.base_color * (shares.opaque * coupling_viewer(material, average, viewer)));
   if (lobes.glossy) assign(base.multiple, multiple_scattering(material, average, viewer));
-  if (lobes.frosted_sheets()) {
-    const poly<double> frosted = frosted_scattering(material, shares.transmissive, average, viewer);
-    assign(base.multiple, lobes.glossy ? plus(base.multiple, frosted) : Rgb{frosted, frosted, frosted});
-    assign(base.behind, material.base_color * frosted);
-    const poly<double> behind = largest_channel(base.behind);
-    const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
-    base.share_behind.assign_all_lanes(behind / cn::max(front + behind, poly<double>(1e-30)));
-  }
+  if (lobes.frosted_sheets())
+    add_frosted(lobes, material, frosted_scattering(material, shares.transmissive, average, viewer), base);
   return {base, albedo};
+}
+
+inline CosinePart cosine_part(const BsdfConfig& config, const Material& material, const BaseShares& shares,
+                              const SpecularBase& specular, const poly<double>& cos_viewer) {
+  const Lobes& lobes = config.lobes;
+  if (!lobes.cosine()) return {};
+  CosinePart alone{};
+  if (lobes.diffuse) assign(alone.base.diffuse, material.base_color);
+  if (!lobes.specular()) return alone;
+  return unless_absent(
+      config, [&] { return specular.is_present(lobes); }, alone,
+      [&] { return cosine_part_under_specular(lobes, material, shares, specular.alpha, cos_viewer); });
 }
 
 /// An estimate of the specular base's albedo: Schlick's reflectance for the macroscopic cosine, and all light
@@ -85,7 +100,7 @@ inline SamplingShares sampling_shares(const Lobes& lobes, const BsdfTerms& terms
   const poly<double> coat = add(lobes.coat, [&] { return terms.coat.albedo_viewer; });
   const poly<double> sheen =
       add(lobes.sheen, [&] { return below_coat(sheen_albedo(terms.sheen, terms.sheen.raw_albedo_viewer)); });
-  const poly<double> scale = 1.0 / cn::max(sum.total(), poly<double>(1e-30));
+  const poly<double> scale = 1.0 / keep_positive(sum.total());
   const auto share = [&](bool present, const poly<double>& albedo) {
     return present ? albedo * scale : albedo;
   };
@@ -99,14 +114,15 @@ inline BsdfTerms bsdf_terms(const BsdfConfig& config, const Material& material,
   const BaseShares shares = lobes.specular() ? base_shares(lobes, material) : BaseShares{};
   const SpecularBase specular =
       lobes.specular() ? specular_base(lobes, material, shares, cos_viewer) : SpecularBase{};
-  const CosinePart cosine = cosine_part(lobes, material, shares, specular.alpha, cos_viewer);
-  const CoatLayer coat = lobes.coat ? unless_absent(config, material.coat > 0.0, CoatLayer{},
+  const CosinePart cosine = cosine_part(config, material, shares, specular, cos_viewer);
+  const auto coat_present = [&] { return material.coat > 0.0; };
+  const CoatLayer coat = lobes.coat ? unless_absent(config, coat_present, CoatLayer{},
                                                     [&] { return coat_layer(material, cos_viewer); })
                                     : CoatLayer{};
-  const SheenLayer sheen =
-      lobes.sheen ? unless_absent(config, largest_channel(material.sheen_color) > 0.0, SheenLayer{},
-                                  [&] { return sheen_layer(material, cos_viewer); })
-                  : SheenLayer{};
+  const auto sheen_present = [&] { return largest_channel(material.sheen_color) > 0.0; };
+  const SheenLayer sheen = lobes.sheen ? unless_absent(config, sheen_present, SheenLayer{},
+                                                       [&] { return sheen_layer(material, cos_viewer); })
+                                       : SheenLayer{};
   return {cos_viewer,
           specular,
           cosine.albedo,

@@ -8,10 +8,12 @@ namespace path_tracer {
 
 struct BsdfSample {
   Direction3 direction;
-  Rgb weight;        ///< BSDF * cosine / pdf; 0 ends the path
-  poly<double> pdf;  ///< per solid angle, as evaluate_bsdf() gives it; 0 for a single direction
-  mask is_delta;     ///< the direction has no density: lights are not sampled towards it
-  mask transmits;    ///< the segment goes on behind the surface
+  Rgb weight;  ///< BSDF * cosine / pdf; 0 ends the path
+  /// Per solid angle, as evaluate_bsdf() gives it. 0 for a single direction, and for purely diffuse materials
+  /// without BsdfConfig::diffuse_pdf.
+  poly<double> pdf;
+  mask is_delta;   ///< the direction has no density: lights are not sampled towards it
+  mask transmits;  ///< the segment goes on behind the surface
 };
 
 namespace bsdf_detail {
@@ -74,6 +76,12 @@ inline Cap facet_cap(const Bsdf& bsdf, const WayToSample& way) {
   return {alpha, stretch_viewer(bsdf.point.to_viewer, bsdf.point.normal, cosine, alpha, size)};
 }
 
+/// Turns a direction around the z axis to one around the normal.
+inline Direction3 turn_to(const Direction3& normal, const Direction3& direction) {
+  const Tangents frame = tangents(normal);
+  return frame.first * direction.x + frame.second * direction.y + normal * direction.z;
+}
+
 /// Samples a facet's normal as the viewer sees them (Dupuy and Benyoub, "Sampling Visible GGX Normals with
 /// Spherical Caps", CGF 42(8), 2023), and by the same instructions a cosine-distributed direction: the
 /// viewer's place on the whole sphere is the normal then. The latter is sample_cosine() to the bit.
@@ -81,8 +89,8 @@ inline Direction3 axis_of_cap(const Bsdf& bsdf, const WayToSample& way, const Ca
                               const Direction3& on_cap) {
   const Direction3& normal = bsdf.point.normal;
   const bool spheres = bsdf.config.lobes.cosine() || bsdf.config.lobes.sheen;
-  const Tangents frame = tangents(normal);
-  const Direction3 turned = frame.first * on_cap.x + frame.second * on_cap.y + normal * on_cap.z;
+  const Direction3 turned = unless_absent(
+      bsdf.config, [&] { return way.specular | way.coat; }, on_cap, [&] { return turn_to(normal, on_cap); });
   const Direction3 place =
       spheres ? cn::select(way.sphere, normal, cap.viewer.direction) : cap.viewer.direction;
   const Direction3 half = place + (spheres ? cn::select(way.sphere, on_cap, turned) : turned);
@@ -95,7 +103,9 @@ inline Cap cap_to_sample(const Bsdf& bsdf, const WayToSample& way) {
   const Lobes& lobes = bsdf.config.lobes;
   const poly<double> one = 1.0;
   if (!lobes.rough_specular() && !lobes.coat) return {one, {bsdf.point.normal, one}};
-  const Cap cap = facet_cap(bsdf, way);
+  const Cap cap = unless_absent(
+      bsdf.config, [&] { return way.specular | way.coat; }, Cap{one, {bsdf.point.normal, one}},
+      [&] { return facet_cap(bsdf, way); });
   if (!lobes.cosine() && !lobes.sheen) return cap;
   return {cn::select(way.sphere, one, cap.alpha),
           {cap.viewer.direction, cn::select(way.sphere, one, cap.viewer.height)}};
@@ -155,25 +165,33 @@ inline mask goes_behind(const Bsdf& bsdf, const WayToSample& way, const poly<dou
   return bsdf.config.lobes.sheen ? behind & !way.sheen : behind;
 }
 
-inline Departure depart(const Bsdf& bsdf, const WayToSample& way, const Direction3& axis,
-                        const poly<double>& choice) {
+/// Reflects or transmits at a facet. PEs that sample the sphere transmit nothing.
+inline Departure depart_from_facet(const Bsdf& bsdf, const WayToSample& way, const Direction3& axis,
+                                   const poly<double>& choice) {
   const Lobes& lobes = bsdf.config.lobes;
-  const mask none(cn::mask_from_bits(0));
-  if (!lobes.specular() && !lobes.coat) return {axis, none, {}, {}};
   const poly<double> cosine = clamp_cosine(dot(axis, bsdf.point.to_viewer));
   const Direction3 reflected = reflect(bsdf.point.to_viewer, axis, cosine);
   const bool splits = lobes.smooth_specular() || lobes.transmissive();
   const FacetSplit split = splits ? split_at_facet(bsdf, cosine) : FacetSplit{};
-  const mask through =
-      lobes.transmissive() ? way.specular & (choice >= bsdf.shares.specular * split.reflected_share) : none;
-  const Direction3 by_facet = lobes.transmissive()
-                                  ? cn::select(through, transmit(bsdf, axis, reflected, cosine), reflected)
-                                  : reflected;
-  if (!lobes.cosine() && !lobes.sheen) return {by_facet, through, split, cosine};
-  if (!lobes.frosted_sheets()) return {cn::select(way.sphere, axis, by_facet), through, split, cosine};
-  const mask behind = goes_behind(bsdf, way, choice);
-  const Direction3 on_either_side = cn::select(behind, axis * -1.0, axis);
-  return {cn::select(way.sphere, on_either_side, by_facet), through | behind, split, cosine};
+  if (!lobes.transmissive()) return {reflected, mask(cn::mask_from_bits(0)), split, cosine};
+  const mask through = way.specular & (choice >= bsdf.shares.specular * split.reflected_share);
+  return {cn::select(through, transmit(bsdf, axis, reflected, cosine), reflected), through, split, cosine};
+}
+
+inline Departure depart(const Bsdf& bsdf, const WayToSample& way, const Direction3& axis,
+                        const poly<double>& choice) {
+  const Lobes& lobes = bsdf.config.lobes;
+  const Departure from_sphere{axis, mask(cn::mask_from_bits(0)), {}, {}};
+  if (!lobes.specular() && !lobes.coat) return from_sphere;
+  const Departure by_facet = unless_absent(
+      bsdf.config, [&] { return way.specular | way.coat; }, from_sphere,
+      [&] { return depart_from_facet(bsdf, way, axis, choice); });
+  if (!lobes.cosine() && !lobes.sheen) return by_facet;
+  const mask behind = lobes.frosted_sheets() ? goes_behind(bsdf, way, choice) : mask();
+  const Direction3 of_sphere = lobes.frosted_sheets() ? cn::select(behind, axis * -1.0, axis) : axis;
+  return {cn::select(way.sphere, of_sphere, by_facet.direction),
+          lobes.frosted_sheets() ? by_facet.transmits | behind : by_facet.transmits, by_facet.split,
+          by_facet.cosine};
 }
 
 /// A sample of a lobe that reflects or refracts into a single direction.
@@ -198,13 +216,12 @@ inline DeltaSample smooth_base_sample(const Bsdf& bsdf, const WayToSample& way, 
   const Rgb value = lobes.transmissive()
                         ? cn::select(departure.transmits, split.transmittance, split.reflectance)
                         : split.reflectance;
-  return {value * (1.0 / cn::max(probability, poly<double>(1e-30))), chosen};
+  return {value * (1.0 / keep_positive(probability)), chosen};
 }
 
 inline DeltaSample smooth_coat_sample(const Bsdf& bsdf, const WayToSample& way, const Departure& departure) {
   const CoatLayer& coat = bsdf.terms.coat;
-  const poly<double> weight =
-      coat.weight * coat_fresnel(departure.cosine) / cn::max(bsdf.shares.coat, poly<double>(1e-30));
+  const poly<double> weight = coat.weight * coat_fresnel(departure.cosine) / keep_positive(bsdf.shares.coat);
   return {{weight, weight, weight}, way.coat & (coat.alpha == 0.0)};
 }
 
@@ -280,6 +297,16 @@ inline BsdfSample sample_bsdf(const Bsdf& bsdf, const UniformPair& uniform, cons
   const mask usable = on_meant_side(lobes, departure, found.light);
   return {sample.direction, cn::select(usable, sample.weight, Rgb{0.0, 0.0, 0.0}),
           cn::select(usable, sample.pdf, poly<double>(0.0)), sample.is_delta, sample.transmits};
+}
+
+/// eta^2 where the sample is refracted, else 1. Throughput times the product of these along a path does not
+/// shrink because the path is inside glass; Russian roulette should look at it.
+inline poly<double> roulette_factor(const Bsdf& bsdf, const BsdfSample& sample) {
+  const Lobes& lobes = bsdf.config.lobes;
+  if (!lobes.transmissive()) return 1.0;
+  const poly<double>& eta = bsdf.terms.specular.surface.eta;
+  const mask refracts = lobes.thin_glass ? sample.transmits & !bsdf.material.thin : sample.transmits;
+  return cn::select(refracts, eta * eta, poly<double>(1.0));
 }
 
 }  // namespace path_tracer

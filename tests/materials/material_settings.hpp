@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/support/material_bench.hpp"
+#include "tests/materials/material_bench.hpp"
 
 /// Materials of every kind, for tests that hold for all of them.
 namespace test_support {

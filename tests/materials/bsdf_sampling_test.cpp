@@ -2,13 +2,13 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/materials/material_settings.hpp"
+#include "tests/materials/polar_cells.hpp"
 #include "tests/support/chi_square.hpp"
-#include "tests/support/material_settings.hpp"
-#include "tests/support/polar_cells.hpp"
 #include "tests/support/statistics.hpp"
 
 /// Samples, densities and values of BSDFs against each other.
-namespace materials_sampling_test {
+namespace bsdf_sampling_test {
 
 using path_tracer::BsdfConfig;
 using path_tracer::Lobes;
@@ -271,8 +271,10 @@ TEST_F(MaterialsSampling, LobesOfOtherMaterialsChangeNothing) {
 }
 
 TEST_F(MaterialsSampling, SkippingAbsentLobesChangesNothing) {
-  for (const MonoMaterial& material :
-       {mixture(0.5), varnish(0.4), with_coat(metal(0.3), 1, 0.2), with_sheen(glass(0.5, 1.5), 0.4)}) {
+  MonoMaterial diffuse = varnish(0.5);
+  diffuse.f0 = diffuse.f90 = 0;
+  for (const MonoMaterial& material : {mixture(0.5), varnish(0.4), diffuse, with_coat(diffuse, 1, 0.2),
+                                       with_coat(metal(0.3), 1, 0.2), with_sheen(glass(0.5, 1.5), 0.4)}) {
     BsdfConfig config;
     config.lobes = every_lobe();
     const MonoPoint point = seen_at(0.5);
@@ -372,4 +374,4 @@ TEST_F(MaterialsSampling, NothingIsInfiniteOrNotANumber) {
           }
 }
 
-}  // namespace materials_sampling_test
+}  // namespace bsdf_sampling_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/support/material_bench.hpp"
+#include "tests/materials/material_bench.hpp"
 
 namespace test_support {
 

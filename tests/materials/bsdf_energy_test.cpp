@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "tests/support/material_bench.hpp"
+#include "tests/materials/material_bench.hpp"
 
 /// BSDFs against closed forms and published integrals: energy, reciprocity, Fresnel's equations.
-namespace materials_energy_test {
+namespace bsdf_energy_test {
 
 using cn::poly;
 using path_tracer::BsdfConfig;
@@ -18,6 +18,7 @@ using test_support::unit;
 using test_support::Vector;
 
 constexpr double kPi = path_tracer::kPi;
+constexpr path_tracer::AlbedoNeeds kRough{true, false, true};
 
 Vector at_angle(double cosine, double around) {
   const double sine = std::sqrt(1 - cosine * cosine);
@@ -127,7 +128,7 @@ TEST_F(MaterialsEnergy, FittedAlbedosAreWithinTheirBound) {
       PerPe<double> share = per_pe<double>();
       run([&] {
         const path_tracer::DirectionalAlbedo found =
-            path_tracer::directional_albedo(path_tracer::ggx_albedo(alpha, false, true), cosine, true);
+            path_tracer::directional_albedo(kRough, path_tracer::ggx_albedo(kRough, alpha), cosine);
         test_support::store(loss, found.loss);
         test_support::store(share, found.schlick_share);
       });
@@ -152,7 +153,7 @@ TEST_F(MaterialsEnergy, FittedAveragesAreThoseOfTheFits) {
         cosines[i] = std::sqrt((double(i) * kRounds + round + 0.5) / double(cosines.size() * kRounds));
       run([&] {
         const path_tracer::DirectionalAlbedo found = path_tracer::directional_albedo(
-            path_tracer::ggx_albedo(alpha, false, true), test_support::load(cosines), true);
+            kRough, path_tracer::ggx_albedo(kRough, alpha), test_support::load(cosines));
         test_support::store(losses, found.loss);
         test_support::store(shares, found.schlick_share);
       });
@@ -163,7 +164,7 @@ TEST_F(MaterialsEnergy, FittedAveragesAreThoseOfTheFits) {
     PerPe<double> found_share = cosines;
     run([&] {
       const path_tracer::DirectionalAlbedo average =
-          path_tracer::average_albedo(path_tracer::ggx_albedo(alpha, false, true), roughness, true);
+          path_tracer::average_albedo(kRough, path_tracer::ggx_albedo(kRough, alpha), roughness);
       test_support::store(found_loss, average.loss);
       test_support::store(found_share, average.schlick_share);
     });
@@ -290,4 +291,4 @@ TEST_F(MaterialsEnergy, AbsorptionIsBeersLaw) {
   EXPECT_NEAR(z.front(), 0, 1e-30);
 }
 
-}  // namespace materials_energy_test
+}  // namespace bsdf_energy_test

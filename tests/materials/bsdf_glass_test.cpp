@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "tests/support/material_bench.hpp"
+#include "tests/materials/material_bench.hpp"
 
 /// Smooth and rough glass against Fresnel's equations, closed forms and the formulas of textbooks.
-namespace materials_glass_test {
+namespace bsdf_glass_test {
 
 using path_tracer::BsdfConfig;
 using path_tracer::Lobes;
@@ -174,6 +174,30 @@ TEST_F(MaterialsGlass, SmoothGlassReflectsFresnelsShare) {
   }
 }
 
+/// Through a sheet of glass, the weights times the factors stay 1, although the radiance inside does not.
+TEST_F(MaterialsGlass, RouletteFactorsUndoTheCompression) {
+  const BsdfConfig config = config_of({&Lobes::glass, &Lobes::thin_glass});
+  MonoMaterial material;
+  material.transmission = 1;
+  material.roughness = 0;
+  for (const double eta : {1.5, 1 / 1.5})
+    for (const bool thin : {false, true})
+      for (const double choice : {1e-9, 1 - 1e-9}) {
+        material.eta = eta;
+        material.thin = thin;
+        PerPe<double> weight = per_pe<double>();
+        PerPe<double> factor = per_pe<double>();
+        run([&] {
+          const path_tracer::Bsdf bsdf = prepare(config, material, seen_at(0.9));
+          const path_tracer::BsdfSample found = sample(bsdf, {0.5, 0.5}, choice);
+          test_support::store(weight, found.weight.x);
+          test_support::store(factor, path_tracer::roulette_factor(bsdf, found));
+        });
+        EXPECT_NEAR(weight.front() * factor.front(), 1, 1e-14) << eta << " " << thin << " " << choice;
+        EXPECT_EQ(factor.front() != 1, choice > 0.5 && !thin) << eta;
+      }
+}
+
 TEST_F(MaterialsGlass, RoughGlassTransmitsWhatQuadratureSays) {
   const BsdfConfig config = config_of({&Lobes::rough_glass});
   MonoMaterial material;
@@ -255,4 +279,4 @@ TEST_F(MaterialsGlass, ValuesAreTheTextbooks) {
   EXPECT_GT(positive, 500);
 }
 
-}  // namespace materials_glass_test
+}  // namespace bsdf_glass_test

@@ -13,7 +13,7 @@
 #include "testbench/film/error_curve.hpp"
 #include "testbench/film/light_pixels.hpp"
 #include "testbench/run/render_parts.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/progress_bar.hpp"
 #include "testbench/system/standard_output.hpp"

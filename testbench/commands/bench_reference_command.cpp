@@ -9,7 +9,7 @@
 #include "testbench/commands/output_files.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/run/render_parts.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/progress_bar.hpp"

@@ -13,7 +13,7 @@
 #include "testbench/commands/output_files.hpp"
 #include "testbench/paper/paper.hpp"
 #include "testbench/run/render.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"

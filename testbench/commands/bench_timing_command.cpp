@@ -8,7 +8,7 @@
 
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/output_files.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/system/processes.hpp"
 #include "testbench/system/progress_bar.hpp"

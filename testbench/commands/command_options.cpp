@@ -13,7 +13,7 @@
 #include "testbench/film/film_size.hpp"
 #include "testbench/run/run_settings.hpp"
 #include "testbench/run/timing_name.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/standard_output.hpp"
 

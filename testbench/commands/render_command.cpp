@@ -13,7 +13,7 @@
 #include "testbench/film/image_file.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/observe/observation.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/rank_render.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/statistics/statistics_file.hpp"

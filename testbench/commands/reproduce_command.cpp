@@ -8,7 +8,7 @@
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/paper/paper_runs.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/system/progress_bar.hpp"
 

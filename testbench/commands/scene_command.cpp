@@ -6,8 +6,8 @@
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"
-#include "testbench/scene/generated_scene.hpp"
-#include "testbench/scene/save_scene.hpp"
+#include "testbench/scene_file/generated_scene.hpp"
+#include "testbench/scene_file/save_scene.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/standard_output.hpp"
 

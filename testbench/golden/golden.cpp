@@ -8,7 +8,7 @@
 #include "testbench/files/atomic_file.hpp"
 #include "testbench/files/input_file.hpp"
 #include "testbench/mono_image/scene_features.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"

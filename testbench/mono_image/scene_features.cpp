@@ -39,9 +39,10 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
     if (is_used[i]) add_lobes(scene.materials[i], features.lobes);
   if (!features.lobes.specular() && !features.lobes.coat && !features.lobes.sheen)
     features.lobes.diffuse = true;
-  features.lights = std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
-    return scene.materials[std::size_t(triangle.material)].emission != glm::dvec3(0.0);
-  });
+  features.lights =
+      std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
+        return scene.materials[std::size_t(triangle.material)].emission != glm::dvec3(0.0);
+      });
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();
   features.multiple_importance = config.program != path_tracer::Program::segments && features.lights &&

@@ -5,7 +5,7 @@
 
 #include "testbench/film/film_size.hpp"
 #include "testbench/mono_image/mono_image.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 
 namespace cornell_box_test {
 

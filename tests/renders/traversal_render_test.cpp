@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "testbench/run/render.hpp"
-#include "testbench/scene/generated_scene.hpp"
+#include "testbench/scene_file/generated_scene.hpp"
 #include "testbench/system/error.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"

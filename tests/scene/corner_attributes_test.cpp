@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "testbench/scene/gltf_mesh.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/image_bytes.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -1,4 +1,4 @@
-#include "testbench/scene/generated_scene.hpp"
+#include "testbench/scene_file/generated_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 
 #include "testbench/bvh/bvh.hpp"
 #include "testbench/scene/mesh.hpp"
-#include "testbench/scene/save_scene.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/save_scene.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/error.hpp"
 #include "tests/support/temporary_directory.hpp"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/error.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "testbench/scene/gltf_mesh.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"

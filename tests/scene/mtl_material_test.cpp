@@ -7,7 +7,7 @@
 
 #include "testbench/material/mtl_surface.hpp"
 #include "testbench/scene/obj_mesh.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/texture/sample.hpp"
 #include "tests/support/image_bytes.hpp"
 #include "tests/support/input_error.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "testbench/files/input_file.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/error.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"

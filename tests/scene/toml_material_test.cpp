@@ -1,6 +1,6 @@
 // Materials, environments and lights of scene.toml.
 
-#include "testbench/scene/toml_material.hpp"
+#include "testbench/scene_file/toml_material.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "testbench/scene/save_scene.hpp"
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/save_scene.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 #include "testbench/texture/sample.hpp"
 #include "tests/support/image_bytes.hpp"
 #include "tests/support/input_error.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 
 namespace test_support {
 namespace {

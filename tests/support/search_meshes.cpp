@@ -6,8 +6,8 @@
 
 #include "testbench/bvh/bvh.hpp"
 #include "testbench/scene/coincident_triangles.hpp"
-#include "testbench/scene/generated_scene.hpp"
 #include "testbench/scene/mesh.hpp"
+#include "testbench/scene_file/generated_scene.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace test_support {

@@ -44,8 +44,9 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
     if (lobes.transmissive()) {
       const poly<double> ior = record.get(&MaterialRecord::ior);
       material.transmission.assign_all_lanes(record.get(&MaterialRecord::transmission));
-      material.eta.assign_all_lanes(cn::select(front, ior, 1.0 / ior));
       if (lobes.thin_glass) material.thin = record.get(&MaterialRecord::thin) != 0;
+      const mask enters = lobes.thin_glass ? front | material.thin : front;
+      material.eta.assign_all_lanes(cn::select(enters, ior, 1.0 / ior));
     }
   }
   if (lobes.coat) {

@@ -1,4 +1,4 @@
-#include "testbench/scene/scene_file.hpp"
+#include "testbench/scene_file/scene_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,9 @@
 #include "testbench/scene/obj_mesh.hpp"
 #include "testbench/scene/ply_mesh.hpp"
 #include "testbench/scene/repeated_triangles.hpp"
-#include "testbench/scene/table_reader.hpp"
-#include "testbench/scene/toml_light.hpp"
-#include "testbench/scene/toml_material.hpp"
+#include "testbench/scene_file/table_reader.hpp"
+#include "testbench/scene_file/toml_light.hpp"
+#include "testbench/scene_file/toml_material.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/nesting.hpp"
 

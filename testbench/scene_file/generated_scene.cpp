@@ -1,4 +1,4 @@
-#include "testbench/scene/generated_scene.hpp"
+#include "testbench/scene_file/generated_scene.hpp"
 
 #include <algorithm>
 #include <cmath>

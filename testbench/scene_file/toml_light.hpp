@@ -4,7 +4,7 @@
 
 #include "testbench/files/file_reach.hpp"
 #include "testbench/scene/scene.hpp"
-#include "testbench/scene/table_reader.hpp"
+#include "testbench/scene_file/table_reader.hpp"
 
 namespace testbench {
 

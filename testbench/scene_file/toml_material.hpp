@@ -6,7 +6,7 @@
 
 #include "testbench/files/file_reach.hpp"
 #include "testbench/material/material.hpp"
-#include "testbench/scene/table_reader.hpp"
+#include "testbench/scene_file/table_reader.hpp"
 #include "testbench/texture/texture_store.hpp"
 
 namespace testbench {

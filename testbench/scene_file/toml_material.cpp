@@ -1,4 +1,4 @@
-#include "testbench/scene/toml_material.hpp"
+#include "testbench/scene_file/toml_material.hpp"
 
 #include <glm/trigonometric.hpp>
 

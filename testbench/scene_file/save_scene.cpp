@@ -1,4 +1,4 @@
-#include "testbench/scene/save_scene.hpp"
+#include "testbench/scene_file/save_scene.hpp"
 
 #include <toml++/toml.h>
 

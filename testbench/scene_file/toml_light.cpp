@@ -1,4 +1,4 @@
-#include "testbench/scene/toml_light.hpp"
+#include "testbench/scene_file/toml_light.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
 

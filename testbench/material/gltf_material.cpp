@@ -1,5 +1,6 @@
 #include "testbench/material/gltf_material.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "testbench/gltf/gltf_schema.hpp"
@@ -11,29 +12,22 @@ namespace {
 constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
 
-/// Notes what pictures do not show yet.
-void note_what_is_left_out(GltfDocument& document, const nlohmann::json& source, const std::string& pointer) {
-  const nlohmann::json* const metallic = find_gltf(source, "pbrMetallicRoughness");
-  const nlohmann::json* const glossy = find_gltf(source, "extensions", kSpecularGlossiness);
-  for (const char* texture : {"normalTexture", "occlusionTexture", "emissiveTexture"})
-    if (source.contains(texture))
-      document.note(std::string(texture) + " is left out, the factor alone counts", pointer);
-  for (const char* texture : {"baseColorTexture", "metallicRoughnessTexture"})
-    if (metallic != nullptr && metallic->contains(texture))
-      document.note(std::string(texture) + " is left out, the factor alone counts", pointer);
-  if (glossy != nullptr) {
-    document.note("a material of specular and glossiness is shown as diffuse, by its diffuseFactor", pointer);
-    if (glossy->contains("diffuseTexture"))
-      document.note("diffuseTexture is left out, the factor alone counts", pointer);
-  } else if (metallic != nullptr && metallic->value("metallicFactor", 1.0) > 0.0) {
-    document.note("a metallic material is shown as diffuse, by its baseColorFactor", pointer);
-  }
-  if (source.value("alphaMode", "OPAQUE") == "BLEND")
-    document.note("a transparent material (alphaMode BLEND) is shown as opaque", pointer);
-  if (const nlohmann::json* const extensions = find_gltf(source, "extensions"))
-    for (const auto& [name, content] : extensions->items())
-      if (name != kSpecularGlossiness && name != kEmissiveStrength)
-        document.note("the extension " + name + " of materials is left out", pointer);
+/// The extensions of materials that are read.
+constexpr const char* kReadExtensions[] = {kSpecularGlossiness,
+                                           kEmissiveStrength,
+                                           "KHR_materials_ior",
+                                           "KHR_materials_transmission",
+                                           "KHR_materials_volume",
+                                           "KHR_materials_clearcoat",
+                                           "KHR_materials_sheen",
+                                           "KHR_materials_specular"};
+
+void note_other_extensions(GltfDocument& document, const nlohmann::json& source, const std::string& pointer) {
+  const nlohmann::json* const extensions = find_gltf(source, "extensions");
+  if (extensions == nullptr) return;
+  for (const auto& [name, content] : extensions->items())
+    if (std::find(std::begin(kReadExtensions), std::end(kReadExtensions), name) == std::end(kReadExtensions))
+      document.note("the extension " + name + " of materials is left out", pointer);
 }
 
 /// Reads the parts of one material.
@@ -61,7 +55,7 @@ class GltfMaterialReader {
     read_coats();
     read_alpha();
     read_normal();
-    note_what_is_left_out(document_, source_, pointer_);
+    note_other_extensions(document_, source_, pointer_);
     return std::move(material_);
   }
 

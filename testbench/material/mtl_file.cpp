@@ -24,29 +24,15 @@ bool is_one_of(std::string_view word, std::initializer_list<const char*> words) 
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Whether all numbers of the line equal `neutral`, with which its keyword has no effect.
-bool are_all(std::string_view line, double neutral) {
-  double value = neutral;
-  for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
-    if (!parse_number(word, value) || value != neutral) return false;
-  return true;
-}
-
-/// Notes what a picture does not show yet. @param note takes a text
+/// Notes a keyword that is not read. @param note takes a text
 template <class Note>
-void note_left_out_of_mtl(std::string_view keyword, std::string_view value, const Note& note) {
-  if (keyword == "d" || keyword == "tr") {
-    if (!are_all(value, keyword == "d" ? 1.0 : 0.0)) note("transparency is left out");
-  } else if (keyword == "tf") {
-    if (!are_all(value, 1.0)) note("a transmission filter is left out");
-  } else if (is_one_of(keyword, {"ks", "pr", "pm", "ps", "pc", "pcr", "aniso", "anisor"})) {
-    if (!are_all(value, 0.0)) note("gloss is left out, surfaces are diffuse");
-  } else if (keyword.substr(0, 4) == "map_" ||
-             is_one_of(keyword, {"bump", "disp", "decal", "refl", "norm"})) {
-    note("a texture is left out");
-  } else if (!is_one_of(keyword, {"ka", "ns", "ni", "illum", "sharpness"})) {
+void note_unread(std::string_view keyword, const Note& note) {
+  if (keyword.substr(0, 4) == "map_" || is_one_of(keyword, {"disp", "decal", "refl"}))
+    note("a texture of a kind that is not read is left out");
+  else if (is_one_of(keyword, {"aniso", "anisor"}))
+    note("anisotropy is left out");
+  else if (!is_one_of(keyword, {"ka", "ks", "tf", "illum", "sharpness"}))
     note("an unknown keyword of MTL is left out");
-  }
 }
 
 /// One number of MtlSurface.
@@ -101,13 +87,12 @@ class MtlReader {
       material().emission = colour(word, value, kEmissionRange);
     } else {
       read_surface(keyword, word, value);
-      note_left_out_of_mtl(keyword, value, [&](const char* text) { note(text, word); });
     }
   }
 
   void read_surface(const std::string& keyword, std::string_view word, std::string_view value) {
     for (const MtlNumber& number : kMtlNumbers)
-      if (number.keyword == keyword) read_number(number, word, value);
+      if (number.keyword == keyword) return read_number(number, word, value);
     if (keyword == "ks") surface_.specular_colour = colour_within(1.0, word, value);
     if (keyword == "tf") surface_.transmission_colour = colour_within(1.0, word, value);
     double model = 0.0;
@@ -115,6 +100,8 @@ class MtlReader {
       surface_.illumination_model = static_cast<int>(model);
     if (std::optional<MtlTexture> texture = parse_mtl_texture(keyword, value, where_of(word)))
       materials_.back().textures.push_back(std::move(*texture));
+    else
+      note_unread(keyword, [&](const char* text) { note(text, word); });
   }
 
   void read_number(const MtlNumber& number, std::string_view word, std::string_view value) {

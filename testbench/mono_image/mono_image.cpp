@@ -74,7 +74,9 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
                              std::int32_t light) {
   SurfaceRecord record;
   record.normal = to_record(glm::normalize(area_normal(triangle)));
-  record.reflectance = to_record(material.reflectance);
+  // What is not reflected by a fully transmissive surface passes; nothing is diffuse there.
+  const bool is_clear = material.transmission == 1.0 && material.metallic == 0.0;
+  record.reflectance = to_record(is_clear ? material.transmission_colour : material.reflectance);
   record.emission = to_record(material.emission);
   record.face = face;
   record.light = light;
@@ -304,6 +306,32 @@ path_tracer::MaterialRecord material_record(const Material& material) {
   return record;
 }
 
+/// The normal at the corners as an affine function of the position.
+path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
+  const Triangle& triangle = scene.triangles[index];
+  const CornerNormals& corners = scene.corners.normals[index];
+  path_tracer::NormalRecord record;
+  const bool is_flat = corners[0] == glm::dvec3(0.0);
+  const glm::dvec3 plane = area_normal(triangle);
+  if (is_flat) {
+    record.at_origin = to_record(glm::normalize(plane));
+    return record;
+  }
+  // Barycentric coordinates are u = to_u . (p - vertex) and v = to_v . (p - vertex).
+  const glm::dvec3 edge1 = triangle.vertex[1] - triangle.vertex[0];
+  const glm::dvec3 edge2 = triangle.vertex[2] - triangle.vertex[0];
+  const double area_squared = glm::dot(plane, plane);
+  const glm::dvec3 to_u = glm::cross(edge2, plane) / area_squared;
+  const glm::dvec3 to_v = glm::cross(plane, edge1) / area_squared;
+  const glm::dmat3 slope = glm::outerProduct(corners[1] - corners[0], to_u) +
+                           glm::outerProduct(corners[2] - corners[0], to_v);
+  record.at_origin = to_record(corners[0] - slope * triangle.vertex[0]);
+  record.along_x = to_record(slope[0]);
+  record.along_y = to_record(slope[1]);
+  record.along_z = to_record(slope[2]);
+  return record;
+}
+
 void put_material(MonoImage& image, std::size_t triangle, const Material& material) {
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
   put_tail(image, triangle, sizes.material, material_record(material));
@@ -320,6 +348,7 @@ void put_material(MonoImage& image, std::size_t triangle, const Material& materi
 
 void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& lights) {
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
+  const bool has_normals = image.layout.features.normals;
   std::vector<std::int32_t> light_of(triangles.count(), path_tracer::kNoLight);
   for (std::size_t light = 0; light < lights.triangles.size(); ++light)
     for (const std::size_t triangle : lights.triangles[light])
@@ -331,6 +360,7 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
     const std::uint64_t place = i * std::uint64_t(sizes.surface);
     std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
     put_material(image, i, material);
+    if (has_normals) put_tail(image, i, sizes.normal, normal_record(triangles.scene, i));
     path_tracer::AimRecord aim{std::numeric_limits<double>::infinity()};
     if (light_of[i] != path_tracer::kNoLight)
       aim.inverse_pdf = lights.records[std::size_t(light_of[i])].inverse_pdf;

@@ -43,6 +43,7 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
       std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
         return scene.materials[std::size_t(triangle.material)].emission != glm::dvec3(0.0);
       });
+  features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();
   features.multiple_importance = config.program != path_tracer::Program::segments && features.lights &&

@@ -58,8 +58,6 @@ class Collector {
  private:
   void add_light(std::size_t node) {
     result_.mesh.lights.push_back(read_gltf_light(document_, node, nodes_.transforms[node]));
-    document_.note("a light without area (KHR_lights_punctual) is left out",
-                   document_.named("nodes", "node", node));
   }
 
   void add_mesh(std::size_t node, const nlohmann::json& source) {

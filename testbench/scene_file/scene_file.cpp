@@ -13,6 +13,7 @@
 #include "testbench/scene/default_view.hpp"
 #include "testbench/scene/gltf_mesh.hpp"
 #include "testbench/scene/normalise.hpp"
+#include "testbench/scene/not_shown.hpp"
 #include "testbench/scene/obj_mesh.hpp"
 #include "testbench/scene/ply_mesh.hpp"
 #include "testbench/scene/repeated_triangles.hpp"
@@ -329,6 +330,7 @@ Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
                   remove_repeated_triangles(scene));
   order_coincident_triangles(scene, file.string());
   keep_used_textures(scene);
+  note_what_is_not_shown(scene, file.string());
   return scene;
 }
 

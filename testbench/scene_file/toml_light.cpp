@@ -84,12 +84,6 @@ Light read_light(const TableReader& table) {
   return light;
 }
 
-/// Notes what pictures do not show yet.
-void note_lights_left_out(const std::string& file, Scene& scene) {
-  scene.notes.add("the environment's image is left out", file, scene.environment.image ? 1 : 0);
-  scene.notes.add("a light without area ([[light]]) is left out", file, scene.lights.size());
-}
-
 }  // namespace
 
 void read_toml_lights(const toml::table& root, const std::filesystem::path& file, const FileReach& reach,
@@ -107,7 +101,6 @@ void read_toml_lights(const toml::table& root, const std::filesystem::path& file
     for (const toml::node& light : *lights)
       scene.lights.push_back(read_light(TableReader(name, "light", *light.as_table())));
   }
-  note_lights_left_out(name, scene);
 }
 
 Light moved(Light light, const glm::dmat4& transform) {

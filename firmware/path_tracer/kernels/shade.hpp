@@ -151,13 +151,30 @@ inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
   return cn::select(front, Rgb{one, one, one}, transmittance(coefficient, distance));
 }
 
+/// The normal of shading on the viewer's side. Where interpolation turns it away from the viewer, it is that of
+/// the triangle: a surface that is seen is not seen from behind.
+inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& position, const Direction3& normal,
+                                 const mask& front, const Direction3& to_viewer) {
+  if (arguments.sizes.normal == RecordSizes::kNone) return normal;
+  const auto record = tail<NormalRecord>(arguments.surface, arguments.sizes.normal);
+  const Direction3 along = record.get(&NormalRecord::along_x) * position.x +
+                           record.get(&NormalRecord::along_y) * position.y +
+                           record.get(&NormalRecord::along_z) * position.z;
+  const Direction3 unit = normalize(record.get(&NormalRecord::at_origin) + along, normal);
+  const Direction3 facing = cn::select(front, unit, unit * -1.0);
+  return cn::select(dot(facing, to_viewer) > kLeastCosine, facing, normal);
+}
+
 inline Bsdf bsdf_at_hit(const ShadeArguments& arguments, const Direction3& normal, const mask& front) {
   BsdfConfig config;
+  config.shading_normals = arguments.features.normals;
   config.lobes = arguments.features.lobes;
   config.diffuse_pdf = arguments.features.multiple_importance;
   config.skips_absent_lobes = true;
   const Direction3 to_viewer = tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction) * -1.0;
-  return prepare_bsdf(config, read_material(arguments, front), {normal, normal, to_viewer});
+  const Direction3 shading =
+      shading_normal(arguments, arguments.hit.get(&HitRecord::position), normal, front, to_viewer);
+  return prepare_bsdf(config, read_material(arguments, front), {shading, normal, to_viewer});
 }
 
 /// Where hits and shadow rays share the light.

@@ -36,12 +36,13 @@ struct Features {
   Lobes lobes{true};
   bool lights = true;        ///< triangles that emit, to aim shadow rays at
   bool environment = false;  ///< light that arrives from outside
+  bool normals = false;      ///< that vary over triangles
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 
   /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
   /// alone.
-  constexpr bool plain() const { return lobes.only_diffuse() && !environment && !multiple_importance; }
+  constexpr bool plain() const { return lobes.only_diffuse() && !environment && !normals && !multiple_importance; }
 };
 
 }  // namespace path_tracer

@@ -35,6 +35,15 @@ struct SheenRecord {
   double roughness = 0;
 };
 
+/// Behind a SurfaceRecord: the normal of shading, before it is normalised, which is an affine function of the
+/// position: at_origin + x along_x + y along_y + z along_z.
+struct NormalRecord {
+  vec3<double> at_origin{};
+  vec3<double> along_x{};
+  vec3<double> along_y{};
+  vec3<double> along_z{};
+};
+
 /// Behind a SurfaceRecord: how likely shadow rays find it.
 struct AimRecord {
   double inverse_pdf = 0;  ///< LightRecord::inverse_pdf of the triangle's light; infinity if it is none
@@ -61,6 +70,7 @@ struct RecordSizes {
   int absorption = kNone;
   int coat = kNone;
   int sheen = kNone;
+  int normal = kNone;
   int aim = kNone;
 
   explicit RecordSizes(const Features& features) {
@@ -78,6 +88,7 @@ struct RecordSizes {
     absorption = append(features.lobes.absorption, sizeof(AbsorptionRecord));
     coat = append(features.lobes.coat, sizeof(CoatRecord));
     sheen = append(features.lobes.sheen, sizeof(SheenRecord));
+    normal = append(features.normals, sizeof(NormalRecord));
     aim = append(features.multiple_importance, sizeof(AimRecord));
   }
 };

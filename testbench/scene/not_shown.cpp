@@ -1,0 +1,45 @@
+#include "testbench/scene/not_shown.hpp"
+
+#include <vector>
+
+namespace testbench {
+namespace {
+
+struct NotShown {
+  const char* text;
+  bool (*has)(const Material&);
+};
+
+/// What materials have and the firmware does not render.
+constexpr NotShown kNotShown[] = {
+    {"a texture of a material is left out, its factor alone counts", has_texture},
+    {"a material of partial coverage (alpha) is shown as opaque",
+     [](const Material& material) { return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0; }},
+    {"a colour of a dielectric's reflection is shown as its strongest channel in grey",
+     [](const Material& material) {
+       const glm::dvec3& colour = material.specular_colour;
+       return material.specular > 0.0 && !(colour.x == colour.y && colour.y == colour.z);
+     }},
+    {"a colour of transmission is left out, what passes has the base colour",
+     [](const Material& material) {
+       const bool is_clear = material.transmission == 1.0 && material.metallic == 0.0;
+       return material.transmission > 0.0 && !is_clear &&
+              material.transmission_colour != material.reflectance;
+     }},
+};
+
+}  // namespace
+
+void note_what_is_not_shown(Scene& scene, const std::string& file) {
+  std::vector<bool> is_used(scene.materials.size());
+  for (const Triangle& triangle : scene.triangles) is_used[std::size_t(triangle.material)] = true;
+  for (const NotShown& kind : kNotShown) {
+    std::size_t times = 0;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) times += is_used[i] && kind.has(scene.materials[i]);
+    scene.notes.add(kind.text, file, times);
+  }
+  scene.notes.add("the environment's image is left out", file, scene.environment.image ? 1 : 0);
+  scene.notes.add("a light without area is left out", file, scene.lights.size());
+}
+
+}  // namespace testbench

@@ -321,10 +321,10 @@ Scene load_scene(const std::filesystem::path& path, bool is_outside_allowed) {
   const std::filesystem::path file = scene_path(path);
   Scene scene = has_suffix(file, {".toml"}) ? toml_scene(file, is_outside_allowed)
                                             : mesh_scene(file, is_outside_allowed);
-  complete_corner_attributes(scene.corners, scene.triangles.size());
   if (scene.triangles.empty()) fail_at_key(file.string(), "mesh", "no triangle with an area", "one or more");
   require_camera_in_reach(scene, file);
   if (!has_light(scene)) add_light_with_note(scene, file);
+  complete_corner_attributes(scene.corners, scene.triangles.size());
   scene.notes.add("a triangle without area is left out", file.string(), scene.degenerate_triangles);
   scene.notes.add("a triangle that repeats another one is left out", file.string(),
                   remove_repeated_triangles(scene));

@@ -123,6 +123,21 @@ TEST_F(CornerAttributesTest, StayInStepWithTriangles) {
   EXPECT_EQ(scene.corners.coordinates[0][2][0].x, 0.75);
 }
 
+/// So do the triangles of the light that a scene without one gets, also when triangles are put in another
+/// order: the second face lies on the first.
+TEST_F(CornerAttributesTest, StayInStepWithTheDefaultLight) {
+  write("m.obj", std::string(kTilted) +
+                     "v 0.25 0.25 0\nv 0.5 0.25 0\nv 0.25 0.5 0\n"
+                     "f 1//1 2//2 3//3\nf 5 6 7\nf 2//1 4//2 3//3\n");
+  const Scene scene = testbench::load_scene(directory_ / "m.obj");
+  ASSERT_EQ(scene.triangles.size(), 5u);
+  ASSERT_EQ(scene.corners.normals.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const bool is_bent = scene.triangles[i].vertex[2] == glm::dvec3(0, 1, 0);
+    EXPECT_EQ(scene.corners.normals[i][0] != glm::dvec3(0.0), is_bent) << i;
+  }
+}
+
 TEST_F(CornerAttributesTest, ScenesMoveNormalsWithTheirMesh) {
   const Scene scene = load(std::string(kTilted) + "f 1//1 2//2 3//3\n",
                            "rotate_degrees = [0, 0, 90]\nscale = 7\ntranslate = [1, 2, 3]\n");

@@ -40,7 +40,7 @@ bool lies_in(const SharedPlane& plane, const Vector& anchor, const Triangle& tri
   const glm::dvec3 normal =
       glm::cross(triangle.vertex[1] - triangle.vertex[0], triangle.vertex[2] - triangle.vertex[0]);
   const double along = normal.x * plane.normal.x + normal.y * plane.normal.y + normal.z * plane.normal.z;
-  return std::abs(along) >= kLeastCosine * glm::length(normal);
+  return std::abs(along) >= kLeastCosine * std::hypot(normal.x, normal.y, normal.z);
 }
 
 /// Triangles by a number of each of them that is below `numbers`; those with a negative one are left out.

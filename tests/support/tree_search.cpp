@@ -153,7 +153,7 @@ std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const st
   arguments.layers = scene.layers;
   arguments.prefilter = prefilter;
   arguments.reach = scene.reach;
-  arguments.surfaces = kSurfaces;
+  arguments.surfaces = {kSurfaces, sizeof(path_tracer::SurfaceRecord)};
   arguments.hit = PolyPointer<HitRecord>(at.hit);
   arguments.surface_place = {at.surface_place};
   arguments.hit_something = &hit_something;
@@ -254,8 +254,8 @@ LaneMask RaySearch::traverse(const SearchScene& scene, const Offsets& at, const 
 void RaySearch::finish(const Offsets& at, const LaneMask& rays, std::vector<SearchHit>& hits) {
   path_tracer::FinishArguments arguments;
   arguments.record = PolyPointer<TraversalRecord>(at.record);
-  arguments.surfaces = kSurfaces;
-  arguments.hits = kHits;
+  arguments.surfaces = {kSurfaces, sizeof(path_tracer::SurfaceRecord)};
+  arguments.hits = {kHits, sizeof(HitRecord)};
   arguments.surface_places = kSurfacePlaces;
   arguments.hit = PolyPointer<HitRecord>(at.hit);
   arguments.surface_place = {at.surface_place};

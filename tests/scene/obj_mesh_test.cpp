@@ -339,10 +339,7 @@ TEST_F(ObjMeshTest, what_materials_in_use_leave_out_is_one_note_a_kind) {
   const Mesh mesh = load(std::string(kSquare) + "usemtl glass\nf 1 2 3\n");
   EXPECT_EQ(mesh.materials.at(0).reflectance, glm::dvec3(0.5));
   EXPECT_EQ(mesh.notes.lines(),
-            (std::vector<std::string>{file + "10: d: transparency is left out, 2 times",
-                                      file + "12: Ks: gloss is left out, surfaces are diffuse",
-                                      file + "13: map_Kd: a texture is left out, 2 times",
-                                      file + "15: shine: an unknown keyword of MTL is left out, 2 times",
+            (std::vector<std::string>{file + "15: shine: an unknown keyword of MTL is left out, 2 times",
                                       file + "13: map_Kd: a b.png: a texture is missing, 2 times"}));
 }
 

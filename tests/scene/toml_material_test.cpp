@@ -193,15 +193,34 @@ TEST_F(TomlMaterialTest, ReadsEnvironments) {
   EXPECT_EQ(std::count(image.files.begin(), image.files.end(), directory_ / "sky.hdr"), 1);
 }
 
-TEST_F(TomlMaterialTest, LightsAndEnvironmentsAreNoted) {
-  write("m.mtl", "");
-  const Scene scene = load("",
-                           "[environment]\nconstant = [1, 2, 3]\n[[light]]\ntype = \"point\"\n"
-                           "position = [1, 2, 3]\nintensity = [4, 5, 6]\n");
+/// The notes of a scene, a line each.
+std::string notes_of(const Scene& scene) {
   std::string notes;
   for (const std::string& line : scene.notes.lines()) notes += line + "\n";
-  EXPECT_NE(notes.find("scene.toml: the environment is left out\n"), std::string::npos);
-  EXPECT_NE(notes.find("scene.toml: a light without area ([[light]]) is left out\n"), std::string::npos);
+  return notes;
+}
+
+TEST_F(TomlMaterialTest, WhatPicturesDoNotShowIsNoted) {
+  write("m.mtl", "");
+  const std::string notes =
+      notes_of(load("specular = 1.0, specular_colour = [1, 0.5, 0.5], alpha = 0.5, transmission = 0.5, "
+                    "transmission_colour = [1, 0, 0]",
+                    "[environment]\nconstant = [1, 2, 3]\n[[light]]\ntype = \"point\"\n"
+                    "position = [1, 2, 3]\nintensity = [4, 5, 6]\n"));
+  for (const char* const part :
+       {"a material of partial coverage (alpha) is shown as opaque", "a colour of a dielectric's reflection",
+        "a colour of transmission", "a light without area is left out"})
+    EXPECT_NE(notes.find(std::string("scene.toml: ") + part), std::string::npos) << notes << part;
+  EXPECT_EQ(notes.find("environment"), std::string::npos) << notes;
+}
+
+TEST_F(TomlMaterialTest, WhatPicturesShowIsNotNoted) {
+  write("m.mtl", "");
+  const std::string notes = notes_of(
+      load("roughness = 0.5, clearcoat = 1, sheen_colour = [1, 1, 1], transmission = 1, "
+           "transmission_colour = [1, 0, 0]",
+           "[environment]\nconstant = [1, 2, 3]\n"));
+  EXPECT_EQ(notes.find("left out"), std::string::npos) << notes;
 }
 
 TEST_F(TomlMaterialTest, RefusesLightsThatAreNone) {

@@ -33,10 +33,6 @@ void intersect(const IntersectArguments& arguments) {
   cn::keep(nearest.number >= 0, *arguments.hit_something);
 }
 
-poly<double> largest(const vec3<poly<double>>& v) {
-  return cn::max(v.x, cn::max(v.y, v.z));
-}
-
 struct Surface {
   Point3 position;
   Direction3 normal;  ///< on the side that the ray arrived from
@@ -77,7 +73,7 @@ void scatter(const ScatterArguments& arguments) {
   const Surface surface{arguments.hit.get(&HitRecord::position),
                         cn::select(front, surface_normal, surface_normal * -1.0),
                         arguments.surface.get(&SurfaceRecord::reflectance)};
-  const poly<double> albedo = largest(surface.reflectance);
+  const poly<double> albedo = largest_channel(surface.reflectance);
   const ScatterNumbers random =
       scatter_numbers(arguments.sampler, arguments.seed, arguments.path.get(&PathRecord::pixel),
                       arguments.path.get(&PathRecord::sample), depth);

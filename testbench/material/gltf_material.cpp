@@ -13,14 +13,9 @@ constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness
 constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
 
 /// The extensions of materials that are read.
-constexpr const char* kReadExtensions[] = {kSpecularGlossiness,
-                                           kEmissiveStrength,
-                                           "KHR_materials_ior",
-                                           "KHR_materials_transmission",
-                                           "KHR_materials_volume",
-                                           "KHR_materials_clearcoat",
-                                           "KHR_materials_sheen",
-                                           "KHR_materials_specular"};
+constexpr const char* kReadExtensions[] = {
+    kSpecularGlossiness,    kEmissiveStrength,         "KHR_materials_ior",   "KHR_materials_transmission",
+    "KHR_materials_volume", "KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_specular"};
 
 void note_other_extensions(GltfDocument& document, const nlohmann::json& source, const std::string& pointer) {
   const nlohmann::json* const extensions = find_gltf(source, "extensions");

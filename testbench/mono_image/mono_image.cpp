@@ -323,8 +323,8 @@ path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
   const double area_squared = glm::dot(plane, plane);
   const glm::dvec3 to_u = glm::cross(edge2, plane) / area_squared;
   const glm::dvec3 to_v = glm::cross(plane, edge1) / area_squared;
-  const glm::dmat3 slope = glm::outerProduct(corners[1] - corners[0], to_u) +
-                           glm::outerProduct(corners[2] - corners[0], to_v);
+  const glm::dmat3 slope =
+      glm::outerProduct(corners[1] - corners[0], to_u) + glm::outerProduct(corners[2] - corners[0], to_v);
   record.at_origin = to_record(corners[0] - slope * triangle.vertex[0]);
   record.along_x = to_record(slope[0]);
   record.along_y = to_record(slope[1]);

@@ -42,9 +42,9 @@ inline constexpr double kMaxCoordinate = 1e100;
 
 /// How a mesh file is read.
 struct MeshOptions {
-  FileReach reach;                                                            ///< of the files that it names
-  std::optional<Material> material;                                           ///< in place of the default one
-  std::optional<std::string> camera = std::nullopt;                           ///< name of the camera to take, or of its node
+  FileReach reach;                                   ///< of the files that it names
+  std::optional<Material> material;                  ///< in place of the default one
+  std::optional<std::string> camera = std::nullopt;  ///< name of the camera to take, or of its node
   std::shared_ptr<TextureStore> textures = std::make_shared<TextureStore>();  ///< where its textures go
   bool must_have_textures = false;  ///< whether a texture of an MTL file that is missing is an error
 };

@@ -14,7 +14,9 @@ struct NotShown {
 constexpr NotShown kNotShown[] = {
     {"a texture of a material is left out, its factor alone counts", has_texture},
     {"a material of partial coverage (alpha) is shown as opaque",
-     [](const Material& material) { return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0; }},
+     [](const Material& material) {
+       return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0;
+     }},
     {"a colour of a dielectric's reflection is shown as its strongest channel in grey",
      [](const Material& material) {
        const glm::dvec3& colour = material.specular_colour;
@@ -35,7 +37,8 @@ void note_what_is_not_shown(Scene& scene, const std::string& file) {
   for (const Triangle& triangle : scene.triangles) is_used[std::size_t(triangle.material)] = true;
   for (const NotShown& kind : kNotShown) {
     std::size_t times = 0;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) times += is_used[i] && kind.has(scene.materials[i]);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+      times += is_used[i] && kind.has(scene.materials[i]);
     scene.notes.add(kind.text, file, times);
   }
   scene.notes.add("the environment's image is left out", file, scene.environment.image ? 1 : 0);

@@ -150,12 +150,14 @@ TEST(Furnace, WhiteSurfacesKeepTheMeanAndTheVariance) {
         native_paths(closed_cube(albedo, emission, {16, 16}), render_options(Program::segments, 8));
     double vertices = 0;
     for (const RadianceRecord& path : paths) {
-      // Roulette at the albedo leaves each weight at 1, so a path is worth its vertices, whatever their number.
+      // Roulette at the albedo leaves each weight at 1, so a path is worth its vertices, whatever their
+      // number.
       ASSERT_NEAR(path.radiance.x, std::round(path.radiance.x / emission) * emission, 1e-9 * path.radiance.x);
       vertices += std::round(path.radiance.x / emission);
     }
     EXPECT_GT(vertices_tail_bound(vertices, double(paths.size()), 1 - albedo), test_support::per_test(2 * 3))
-        << "albedo " << albedo << ": mean " << vertices * emission / double(paths.size()) << ", expected is 1";
+        << "albedo " << albedo << ": mean " << vertices * emission / double(paths.size())
+        << ", expected is 1";
   }
 }
 

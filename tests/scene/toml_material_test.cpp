@@ -216,10 +216,10 @@ TEST_F(TomlMaterialTest, WhatPicturesDoNotShowIsNoted) {
 
 TEST_F(TomlMaterialTest, WhatPicturesShowIsNotNoted) {
   write("m.mtl", "");
-  const std::string notes = notes_of(
-      load("roughness = 0.5, clearcoat = 1, sheen_colour = [1, 1, 1], transmission = 1, "
-           "transmission_colour = [1, 0, 0]",
-           "[environment]\nconstant = [1, 2, 3]\n"));
+  const std::string notes =
+      notes_of(load("roughness = 0.5, clearcoat = 1, sheen_colour = [1, 1, 1], transmission = 1, "
+                    "transmission_colour = [1, 0, 0]",
+                    "[environment]\nconstant = [1, 2, 3]\n"));
   EXPECT_EQ(notes.find("left out"), std::string::npos) << notes;
 }
 

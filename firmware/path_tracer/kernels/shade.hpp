@@ -151,10 +151,10 @@ inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
   return cn::select(front, Rgb{one, one, one}, transmittance(coefficient, distance));
 }
 
-/// The normal of shading on the viewer's side. Where interpolation turns it away from the viewer, it is that of
-/// the triangle: a surface that is seen is not seen from behind.
-inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& position, const Direction3& normal,
-                                 const mask& front, const Direction3& to_viewer) {
+/// The normal of shading on the viewer's side. Where interpolation turns it away from the viewer, it is that
+/// of the triangle: a surface that is seen is not seen from behind.
+inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& position,
+                                 const Direction3& normal, const mask& front, const Direction3& to_viewer) {
   if (arguments.sizes.normal == RecordSizes::kNone) return normal;
   const auto record = tail<NormalRecord>(arguments.surface, arguments.sizes.normal);
   const Direction3 along = record.get(&NormalRecord::along_x) * position.x +

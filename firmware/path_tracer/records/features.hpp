@@ -42,7 +42,9 @@ struct Features {
 
   /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
   /// alone.
-  constexpr bool plain() const { return lobes.only_diffuse() && !environment && !normals && !multiple_importance; }
+  constexpr bool plain() const {
+    return lobes.only_diffuse() && !environment && !normals && !multiple_importance;
+  }
 };
 
 }  // namespace path_tracer

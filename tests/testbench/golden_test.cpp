@@ -106,6 +106,21 @@ TEST_F(Golden, GridsThatAreNoneAreRefusedByName) {
   EXPECT_EQ(of_key("firmware.depth = [2]").rfind("grid.toml:6: found the key 'firmware.depth'", 0), 0u);
 }
 
+TEST_F(Golden, ProductsThatNoMachineCanRunAreRefusedBeforeTheyAreMade) {
+  const std::string numbers = "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n";
+  std::string lists;
+  for (const char* const key :
+       {"pio.setup_cycles", "pio.per_pe_cycles", "host.latency_cycles", "ddr.ecc_cycles"})
+    lists += key + (" = " + numbers);
+  EXPECT_EQ(grid(kHead + product(lists)).runs.size(), 10000u);
+  EXPECT_EQ(
+      refusal(kHead + product(lists + "ddr.refresh_cycles = " + numbers)),
+      "grid.toml:10: ddr.refresh_cycles: found 100000 combinations with the lists above, allowed is at most "
+      "10000");
+  EXPECT_EQ(refusal(kHead + product(lists) + kOneRun),
+            "grid.toml:10: scene: found 10001 combinations with the lists above, allowed is at most 10000");
+}
+
 TEST_F(Golden, NamesOfEarlierGridsAreRefusedWithTheNewOnes) {
   for (const auto& [old, now] : {std::pair("scenes = [\"a\"]", "scene"),
                                  {"chips = [\"csx600\"]", "chip"},

@@ -33,6 +33,7 @@ class ExrFile {
     settings.error_handler_fn = keep_message;
     require(exr_start_read(&context_, path.c_str(), &settings));
     try {
+      if (!message_.empty()) require(EXR_ERR_INVALID_ATTR);  // OpenEXR leaves an attribute out and goes on
       require_film();
       require_compression();
     } catch (...) {

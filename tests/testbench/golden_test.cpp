@@ -118,7 +118,7 @@ TEST_F(Golden, ProductsThatNoMachineCanRunAreRefusedBeforeTheyAreMade) {
       "grid.toml:10: ddr.refresh_cycles: found 100000 combinations with the lists above, allowed is at most "
       "10000");
   EXPECT_EQ(refusal(kHead + product(lists) + kOneRun),
-            "grid.toml:10: scene: found 10001 combinations with the lists above, allowed is at most 10000");
+            "grid.toml:11: scene: found 10001 combinations with the lists above, allowed is at most 10000");
 }
 
 TEST_F(Golden, NamesOfEarlierGridsAreRefusedWithTheNewOnes) {

@@ -87,7 +87,6 @@ class ExrFile {
   }
 
   void require(exr_result_t result) const {
-    if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (result == EXR_ERR_SUCCESS) return;
     const std::string why = message_.empty() ? exr_get_default_error_message(result) : message_;
     refuse("cannot be read (" + first_line(why) + ")", kAllowedFile);

@@ -12,6 +12,7 @@ using Polygon = std::vector<glm::dvec3>;
 struct PolygonTriangles {
   std::vector<std::array<glm::dvec3, 3>> triangles;
   bool crosses_itself = false;
+  bool is_too_tangled = false;  ///< left out: it crosses itself too often (polygon_crossings.hpp)
 };
 
 /// Appends the triangles of a polygon to `result.triangles`; some may have no area. A convex polygon is cut
@@ -19,7 +20,8 @@ struct PolygonTriangles {
 /// into a fan from the first of those. Any other is projected along the axis in which it has the least extent
 /// and tessellated there (GLU, sweep line); where it crosses itself, what its outline goes around is filled.
 /// @param polygon 3 vertices or more, each coordinate of at most kMaxCoordinate; bent ones are allowed
-/// Sets result.crosses_itself if it does and no fan covers it. Throws RunError if memory runs out.
+/// Sets result.crosses_itself if it does and no fan covers it, and result.is_too_tangled if it has no
+/// triangles therefore. Throws RunError if memory runs out.
 void triangulate(const Polygon& polygon, PolygonTriangles& result);
 
 }  // namespace testbench

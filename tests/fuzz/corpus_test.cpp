@@ -15,6 +15,15 @@
 #include "tests/fuzz/targets.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+namespace fuzz {
+
+/// GoogleTest's name of a parameter.
+void PrintTo(const Target& target, std::ostream* out) {
+  *out << target.name;
+}
+
+}  // namespace fuzz
+
 namespace corpus_test {
 
 namespace fs = std::filesystem;
@@ -28,10 +37,6 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
   std::sort(entries.begin(), entries.end());
   return entries;
-}
-
-void PrintTo(const Target& target, std::ostream* out) {
-  *out << target.name;
 }
 
 /// While it lives, this process gets 512 MiB more than it has. AddressSanitizer takes terabytes of addresses,

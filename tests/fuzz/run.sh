@@ -28,7 +28,7 @@ export TMPDIR=$output/temporary
 rm -rf "$TMPDIR"
 mkdir -p "$TMPDIR"
 export ASAN_OPTIONS=quarantine_size_mb=16:${ASAN_OPTIONS:-}
-limits=(-timeout=10 -malloc_limit_mb=512 -rss_limit_mb=1024)
+limits=(-timeout=10 -report_slow_units=60 -malloc_limit_mb=512 -rss_limit_mb=1024)
 
 # number_behind WORDS FILE: the last number that follows these words; 0 without one.
 number_behind() {

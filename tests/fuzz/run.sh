@@ -27,6 +27,7 @@ output=$PWD/out/fuzz
 export TMPDIR=$output/temporary
 rm -rf "$TMPDIR"
 mkdir -p "$TMPDIR"
+touch "$output/start"
 export ASAN_OPTIONS=quarantine_size_mb=16:${ASAN_OPTIONS:-}
 limits=(-timeout=10 -report_slow_units=60 -malloc_limit_mb=512 -rss_limit_mb=1024)
 
@@ -58,7 +59,7 @@ all_findings=0
 printf '%-14s %11s %8s %9s %9s\n' target executions exec/s coverage findings
 for target in "${targets[@]}"; do
   fuzz "$target"
-  findings=$(find "$output/findings/$target" -type f | wc -l)
+  findings=$(find "$output/findings/$target" -type f -newer "$output/start" | wc -l)
   all_findings=$((all_findings + findings))
   printf '%-14s %11d %8d %9d %9d\n' "$target" "$executions" $((executions / seconds)) "$coverage" "$findings"
 done

@@ -38,17 +38,14 @@ number_behind() {
 
 # fuzz TARGET: goes on after a finding, until its time is over. Adds up in executions, coverage.
 fuzz() {
-  local target=$1 end=$((SECONDS + seconds)) log=$output/$1.log inputs=("$output/corpus/$1") options=()
+  local target=$1 end=$((SECONDS + seconds)) log=$output/$1.log options=()
   mkdir -p "$output/corpus/$target" "$output/findings/$target"
-  for folder in corpus regressions; do
-    [ ! -d "$here/$folder/$target" ] || inputs+=("$here/$folder/$target")
-  done
   [ ! -f "$here/dictionaries/$target.dict" ] || options=(-dict="$here/dictionaries/$target.dict")
   executions=0
   coverage=0
   while [ $SECONDS -lt $end ]; do
     $fuzz_readers --target="$target" "${limits[@]}" "${options[@]}" -max_total_time=$((end - SECONDS)) \
-      -print_final_stats=1 -artifact_prefix="$output/findings/$target/" "${inputs[@]}" > "$log" 2>&1 ||
+      -print_final_stats=1 -artifact_prefix="$output/findings/$target/" "$output/corpus/$target" "$here/corpus/$target" > "$log" 2>&1 ||
       sed -n '/ERROR/,$p' "$log" >> "$output/findings/$target.log"
     executions=$((executions + $(number_behind number_of_executed_units: "$log")))
     coverage=$(number_behind cov: "$log")

@@ -77,8 +77,7 @@ fs::path tiled_or_not(const fs::path& path, Imf::Compression compression, bool h
   const Imath::Box2i window({2, -1}, {6, 1});
   Imf::Header header(window, window);
   header.compression() = compression;
-  header.setTileDescription({2, 2, Imf::ONE_LEVEL});
-  if (!has_tiles) header.erase("tiles");
+  if (has_tiles) header.setTileDescription({2, 2, Imf::ONE_LEVEL});
   std::vector<half> values;
   for (int i = 0; i < 45; ++i) values.push_back(half(float(i)));
   Imf::FrameBuffer buffer;

@@ -2,6 +2,7 @@
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
@@ -165,18 +166,14 @@ RadianceImage read_exr_rgb(const std::filesystem::path& path) {
 }
 
 ExrFilm read_exr_film(const std::filesystem::path& path) {
-  return read_exr(path, film_limits(), [&](Imf::InputFile& file) {
-    const glm::ivec2 size = exr_size(file);
-    ExrFilm film;
-    film.width = size.x;
-    film.height = size.y;
-    film.rgb = read_exr_channels(file, kExrColour, path);
-    film.variance = read_exr_channels(file, kVarianceChannels, path);
-    for (auto entry = file.header().begin(); entry != file.header().end(); ++entry)
-      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute()))
-        film.attributes[entry.name()] = text->value();
-    return film;
-  });
+  const ExrFile file(path, film_limits());
+  ExrFilm film;
+  film.width = file.size().x;
+  film.height = file.size().y;
+  film.rgb = file.channels(kExrColour);
+  film.variance = file.channels(kVarianceChannels);
+  film.attributes = file.texts();
+  return film;
 }
 
 }  // namespace testbench

@@ -9,7 +9,7 @@ namespace testbench {
 namespace {
 
 /// Elements that no byte of the file stands for, zeros, are at most this many.
-constexpr std::size_t kMostZeros = std::size_t{1} << 24;
+constexpr std::size_t kMostZeros = std::size_t{1} << 22;
 
 template <class T>
 double load_as_number(const std::uint8_t* from) {

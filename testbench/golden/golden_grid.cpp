@@ -19,6 +19,9 @@ using Settings = std::vector<Setting>;
 
 constexpr const char* kFirmware = "firmware.";
 
+/// Combinations that the grids of a file may ask for, with those that they have in common.
+constexpr std::size_t kMostRuns = 10'000;
+
 /// Keys of earlier grids, and the settings that they are called now.
 const std::map<std::string, std::string>& old_keys() {
   static const std::map<std::string, std::string> keys = {{"scenes", "scene"},
@@ -110,12 +113,18 @@ class GridReader {
   }
 
   /// All combinations; the last key of the file changes fastest.
-  std::vector<Settings> product(const toml::table& table) const {
+  std::vector<Settings> product(const toml::table& table) {
     std::vector<Settings> runs(1);
     for (const TomlLeaf& leaf : leaves_of(table)) {
+      const Settings values = settings_of(leaf);
+      const std::size_t combinations = combinations_ + runs.size() * values.size();
+      if (combinations > kMostRuns)
+        refuse(line_of(file_, *leaf.node), leaf.key,
+               std::to_string(combinations) + " combinations with the lists above",
+               "at most " + std::to_string(kMostRuns));
       std::vector<Settings> longer;
       for (const Settings& run : runs)
-        for (const Setting& setting : settings_of(leaf)) {
+        for (const Setting& setting : values) {
           longer.push_back(run);
           longer.back().push_back(setting);
         }
@@ -124,6 +133,7 @@ class GridReader {
     for (const Settings& run : runs)
       if (std::none_of(run.begin(), run.end(), [](const Setting& setting) { return setting.key == "scene"; }))
         refuse(line_of(file_, table), "scene", "none", "a list of scenes");
+    combinations_ += runs.size();
     return runs;
   }
 
@@ -186,6 +196,7 @@ class GridReader {
   fs::path directory_;
   std::string file_;
   int samples_ = 0;
+  std::size_t combinations_ = 0;                         ///< of the grids so far
 };
 
 }  // namespace

@@ -7,11 +7,14 @@
 namespace testbench {
 namespace {
 
+/// Groups of keys have shorter names. In a longer one, each key would bring the whole name along.
+constexpr std::size_t kLongestGroup = 200;
+
 void collect(const toml::table& table, const std::string& prefix,
              const std::function<bool(const toml::table&)>& is_leaf, std::vector<TomlLeaf>& leaves) {
   for (const auto& [name, node] : table) {
     const std::string key = prefix + std::string(name.str());
-    const toml::table* const group = node.as_table();
+    const toml::table* const group = key.size() <= kLongestGroup ? node.as_table() : nullptr;
     if (group != nullptr && !(is_leaf && is_leaf(*group))) {
       collect(*group, key + ".", is_leaf, leaves);
     } else {

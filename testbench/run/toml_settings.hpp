@@ -25,7 +25,8 @@ struct TomlLeaf {
   const toml::node* node;
 };
 
-/// The leaves of a table in the order of the file, which a TOML table does not keep.
+/// The leaves of a table in the order of the file, which a TOML table does not keep. A table with a name that
+/// is longer than any setting's is a leaf, too.
 /// @param is_leaf whether a table is a value and not a group of keys; a null function: no table is
 std::vector<TomlLeaf> leaves_of(const toml::table& table,
                                 const std::function<bool(const toml::table&)>& is_leaf = {});

@@ -16,6 +16,8 @@ namespace {
 
 /// A file of few bytes can place a mesh a million times.
 constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 26;
+/// Vertices and triangles of meshes, those without area as well, counted wherever a mesh is placed.
+constexpr std::size_t kMostPlaced = 4 * kMostGltfTriangles;
 
 /// Collects the triangles, materials and the camera of a document's nodes.
 class Collector {
@@ -113,6 +115,10 @@ class Collector {
                      const glm::dmat4& transform, const std::vector<glm::dmat4>& joints) {
     const std::string where =
         document_.named("meshes", "mesh", place.mesh) + ", primitive " + std::to_string(place.primitive);
+    placed_ += primitive.positions.size() + primitive.triangles.size();
+    if (placed_ > kMostPlaced)
+      document_.fail(where, "more vertices and triangles in all places together",
+                     "at most " + std::to_string(kMostPlaced));
     const auto of_vertex = [&](std::uint32_t vertex) {
       return joints.empty() ? transform : transform_of(primitive.influences[vertex], joints);
     };
@@ -279,6 +285,7 @@ class Collector {
   std::vector<Material> materials_;  ///< those that are used, the default one, then those of a colour
   std::map<std::size_t, ColourMaterials> coloured_;  ///< by the material that the colour multiplies
   std::vector<std::size_t> double_sided_;            ///< triangles that emit from both sides
+  std::size_t placed_ = 0;                           ///< vertices and triangles, in all places
   std::size_t cut_out_ = 0;                          ///< triangles
   std::size_t points_and_lines_ = 0;                 ///< primitives
 };

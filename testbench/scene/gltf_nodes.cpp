@@ -14,6 +14,8 @@ namespace testbench {
 namespace {
 
 constexpr std::size_t kNoParent = std::numeric_limits<std::size_t>::max();
+/// At one node.
+constexpr std::size_t kMostInstances = std::size_t{1} << 20;
 constexpr const char* kTree = "a tree: one parent at most, and no node below itself";
 
 glm::dquat rotation_of(const double* xyzw) {
@@ -201,7 +203,10 @@ std::vector<glm::dmat4> read_gltf_instances(GltfDocument& document, std::size_t 
           pointer,
           "attributes of " + std::to_string(numbers->size()) + " and " + std::to_string(count) + " instances",
           "one number of instances");
+  if (count > kMostInstances)
+    document.fail(pointer, std::to_string(count) + " instances", "at most " + std::to_string(kMostInstances));
   std::vector<glm::dmat4> transforms;
+  transforms.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     glm::dmat4 transform(1.0);
     if (translations.width != 0) transform = glm::translate(transform, glm::make_vec3(translations[i]));

@@ -12,6 +12,7 @@
 #include "testbench/files/file_reach.hpp"
 #include "testbench/scene/polygon.hpp"
 #include "testbench/scene/scene.hpp"
+#include "testbench/system/error.hpp"
 #include "testbench/system/notes.hpp"
 #include "testbench/texture/texture_store.hpp"
 
@@ -97,7 +98,8 @@ class MeshBuilder {
  public:
   explicit MeshBuilder(Mesh& mesh) : mesh_(mesh) {}
 
-  /// Triangles without area are counted, and noted is a polygon that crosses itself.
+  /// Triangles without area are counted, and noted is a polygon that crosses itself. Throws InputError for
+  /// one that crosses itself so often that its triangles would be far more than its vertices.
   /// @param polygon three vertices or more
   /// @param where file and line, or file and face: a function, because it is seldom called
   template <class Where>
@@ -107,6 +109,9 @@ class MeshBuilder {
       return add_triangle({{polygon[0], polygon[1], polygon[2]}, material}, attributes, {0, 1, 2});
     triangles_.clear();
     triangulate(polygon, triangles_);
+    if (triangles_.is_too_tangled)
+      throw InputError(where() + ": found a polygon of " + std::to_string(polygon.size()) +
+                       " vertices that crosses itself too often; allowed: eight times an edge");
     if (triangles_.crosses_itself) mesh_.notes.add("a polygon that crosses itself is filled", where());
     for (std::size_t i = 0; i < triangles_.triangles.size(); ++i) {
       const std::array<glm::dvec3, 3>& vertex = triangles_.triangles[i];

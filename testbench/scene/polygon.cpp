@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "testbench/scene/mesh.hpp"
+#include "testbench/scene/polygon_crossings.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -133,7 +134,29 @@ int exponent_of(const Polygon& polygon) {
   return largest > 0.0 ? std::max(std::ilogb(largest), -1000) : 0;
 }
 
+/// The polygon as GLU sees it: without the axis to which it is most perpendicular.
+std::vector<glm::dvec2> outline_of(const Polygon& polygon, const glm::dvec3& normal) {
+  glm::dvec3 lower = polygon.front();
+  glm::dvec3 upper = polygon.front();
+  for (const glm::dvec3& point : polygon) {
+    lower = glm::min(lower, point);
+    upper = glm::max(upper, point);
+  }
+  const glm::dvec3 thickness = lower - upper;
+  const glm::dvec3 left_out = normal == glm::dvec3(0.0) ? thickness : glm::abs(normal);
+  int axis = left_out.y > left_out.x ? 1 : 0;
+  if (left_out.z > left_out[axis]) axis = 2;
+  std::vector<glm::dvec2> outline;
+  outline.reserve(polygon.size());
+  for (const glm::dvec3& point : polygon) outline.emplace_back(point[(axis + 1) % 3], point[(axis + 2) % 3]);
+  return outline;
+}
+
 void tessellate(const Polygon& polygon, const glm::dvec3& normal, PolygonTriangles& result) {
+  if (!has_few_crossings(outline_of(polygon, normal))) {
+    result.is_too_tangled = true;
+    return;
+  }
   Tessellation state;
   for (const glm::dvec3& point : polygon)
     state.points.push_back({point, static_cast<std::uint32_t>(state.points.size())});

@@ -15,11 +15,13 @@ struct PolygonTriangles {
   /// Of each triangle the corners of the polygon that it has; where edges cross, the corner that is nearest.
   std::vector<std::array<std::uint32_t, 3>> corners;
   bool crosses_itself = false;
+  bool is_too_tangled = false;  ///< left out: it crosses itself too often (polygon_crossings.hpp)
 
   void clear() {
     triangles.clear();
     corners.clear();
     crosses_itself = false;
+    is_too_tangled = false;
   }
 };
 
@@ -28,7 +30,8 @@ struct PolygonTriangles {
 /// into a fan from the first of those. Any other is projected along the axis in which it has the least extent
 /// and tessellated there (GLU, sweep line); where it crosses itself, what its outline goes around is filled.
 /// @param polygon 3 vertices or more, each coordinate of at most kMaxCoordinate; bent ones are allowed
-/// Sets result.crosses_itself if it does and no fan covers it. Throws RunError if memory runs out.
+/// Sets result.crosses_itself if it does and no fan covers it, and result.is_too_tangled if it has no
+/// triangles therefore. Throws RunError if memory runs out.
 void triangulate(const Polygon& polygon, PolygonTriangles& result);
 
 }  // namespace testbench

@@ -211,15 +211,55 @@ std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+namespace {
+
+/// Of one object: for each new member, the JSON library looks through those before it.
+constexpr std::size_t kMostMembers = 10'000;
+/// Of a key and those that it lies in: what flattens a file writes the whole path of each value.
+constexpr std::size_t kMostPathCharacters = 512;
+
+/// Parses a text whose objects have at most kMostMembers members.
+Json parse_few_members(const std::string& text, const std::string& origin) {
+  std::vector<std::size_t> members;  // of the objects that are open
+  return Json::parse(text, [&](int, Json::parse_event_t event, Json&) {
+    if (event == Json::parse_event_t::object_start) members.push_back(0);
+    if (event == Json::parse_event_t::object_end) members.pop_back();
+    if (event == Json::parse_event_t::key && ++members.back() > kMostMembers)
+      throw InputError(origin + ": found an object of more than " + std::to_string(kMostMembers) +
+                       " members; allowed: at most so many");
+    return true;
+  });
+}
+
+/// @param length of the path to `json`
+void require_short_paths(const Json& json, std::size_t length, const std::string& origin) {
+  if (length > kMostPathCharacters)
+    throw InputError(origin + ": found a key of " + std::to_string(length) +
+                     " characters, with those that it lies in; allowed: at most " +
+                     std::to_string(kMostPathCharacters));
+  if (json.is_object())
+    for (const auto& [name, value] : json.items())
+      require_short_paths(value, length + name.size() + 1, origin);
+  if (!json.is_array()) return;
+  for (const Json& element : json) {
+    const bool is_named = element.is_object() && element.contains("name") && element["name"].is_string();
+    const std::size_t name_size = is_named ? element["name"].get_ref<const std::string&>().size() : 1;
+    require_short_paths(element, length + name_size + 1, origin);
+  }
+}
+
+}  // namespace
+
 Json parse_json_object(const std::string& text, const std::string& origin, const std::string& allowed,
                        std::size_t first_line) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw InputError(origin + ": found an empty file; allowed: " + allowed);
   require_shallow_json(text, origin, first_line);
   try {
-    Json json = Json::parse(text);
-    if (json.is_object()) return json;
-    throw InputError(origin + ": found no JSON object; allowed: " + allowed);
+    Json json = parse_few_members(text, origin);
+    if (!json.is_object()) throw InputError(origin + ": found no JSON object; allowed: " + allowed);
+    require_short_paths(json, 0, origin);
+    return json;
   } catch (const Json::parse_error& error) {
     const std::size_t end = std::min(text.size(), std::size_t(error.byte));
     const auto line =

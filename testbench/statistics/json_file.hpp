@@ -22,7 +22,8 @@ struct SchemaRow {
 using Schema = std::vector<SchemaRow>;
 
 /// The object that a text holds. Throws InputError, one line that names `origin` and the line, when the text
-/// is empty, nests too deep (nesting.hpp) or is no JSON object.
+/// is empty, nests too deep (nesting.hpp), is no JSON object, or has more members or longer keys than csx600
+/// writes: work on it takes a time linear in its size.
 /// @param allowed "a statistics file"
 /// @param first_line the number of the text's first line in its file
 nlohmann::ordered_json parse_json_object(const std::string& text, const std::string& origin,

@@ -1,6 +1,5 @@
 #include "testbench/sweep/sweep_file.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -15,6 +14,7 @@ namespace testbench {
 namespace {
 
 constexpr std::size_t kMostSteps = 100'000;
+constexpr std::size_t kMostAxisValues = 200'000;  ///< of all keys on axes
 
 toml::table parse(const std::string& path) {
   const std::string text = read_input_file(path, "a readable TOML file", kMostTomlBytes);
@@ -44,8 +44,6 @@ class SweepReader {
         read_base(node, key);
       }
     }
-    require_keys_once();
-    require_few_points();
     return std::move(sweep_);
   }
 
@@ -72,6 +70,7 @@ class SweepReader {
     }
     const std::optional<std::string> value = scalar_text(node);
     if (!value) refuse(node, key, found_text(node), "one value; a list belongs in an [[axis]]");
+    require_once(node, key);
     sweep_.base.push_back(setting(node, key, *value));
   }
 
@@ -117,6 +116,8 @@ class SweepReader {
 
   void add_key(const toml::node& node, const std::string& key, const std::vector<std::string>& values) {
     SweepAxis& axis = sweep_.axes.back();
+    require_once(node, key);
+    require_few(node, key, values.size());
     if (axis.keys.empty()) axis.steps.resize(values.size());
     if (values.size() != axis.steps.size())
       refuse(node, key, std::to_string(values.size()) + " values",
@@ -131,11 +132,14 @@ class SweepReader {
     const std::string allowed = "a list of values, or { from, to } with step, factor or count";
     if (array == nullptr) refuse(node, key, found_text(node), allowed);
     if (array->empty()) refuse(node, key, "an empty list", allowed);
+    if (array->size() > kMostSteps)
+      refuse(node, key, std::to_string(array->size()) + " values", "at most " + std::to_string(kMostSteps));
     std::vector<std::string> values;
+    std::set<std::string> known;
     for (const toml::node& element : *array) {
       const std::optional<std::string> value = scalar_text(element);
       if (!value) refuse(element, key, found_text(element) + " in a list", "values");
-      if (std::find(values.begin(), values.end(), *value) != values.end() && sweep_.axes.back().keys.empty())
+      if (!known.insert(*value).second && sweep_.axes.back().keys.empty())
         refuse(element, key, "'" + *value + "' twice", "each value once");
       values.push_back(*value);
     }
@@ -219,25 +223,26 @@ class SweepReader {
     return values;
   }
 
-  void require_keys_once() const {
-    std::set<std::string> seen;
-    for (const Setting& setting : sweep_.base) seen.insert(setting.key);
-    for (const SweepAxis& axis : sweep_.axes)
-      for (const Setting& setting : axis.steps.front())
-        if (!seen.insert(setting.key).second)
-          throw InputError(setting.origin + ": " + setting.key +
-                           ": found twice in the sweep; allowed: once, as a value or on an axis");
+  void require_once(const toml::node& node, const std::string& key) {
+    if (!seen_.insert(key).second) refuse(node, key, "twice in the sweep", "once, as a value or on an axis");
   }
 
-  void require_few_points() const {
-    double points = 1;
-    for (const SweepAxis& axis : sweep_.axes) points *= double(axis.steps.size());
-    if (points > double(kMostSweepPoints))
-      throw InputError(sweep_.path + ": axis: found a product of " + model::value_text(points) +
-                       " points; allowed: at most " + std::to_string(kMostSweepPoints));
+  /// Before `count` values of a key are added to the last axis.
+  void require_few(const toml::node& node, const std::string& key, std::size_t count) {
+    axis_values_ += count;
+    if (axis_values_ > kMostAxisValues)
+      refuse(node, key, std::to_string(axis_values_) + " values on all axes",
+             "at most " + std::to_string(kMostAxisValues));
+    if (sweep_.axes.back().keys.empty()) points_ *= count;
+    if (points_ > kMostSweepPoints)
+      refuse(node, "axis", "a product of " + std::to_string(points_) + " points",
+             "at most " + std::to_string(kMostSweepPoints));
   }
 
   SweepFile sweep_;
+  std::set<std::string> seen_;  ///< keys
+  std::size_t axis_values_ = 0;
+  std::uint64_t points_ = 1;
 };
 
 }  // namespace

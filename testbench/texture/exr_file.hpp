@@ -1,15 +1,15 @@
 #pragma once
 
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <openexr.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <new>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "testbench/system/error.hpp"
 #include "testbench/texture/image.hpp"
 
 namespace testbench {
@@ -24,34 +24,52 @@ struct ExrLimits {
   std::string allowed;  ///< says it in error messages
 };
 
-/// Throws InputError for a file that is no OpenEXR file, is larger than the limits, or holds fewer bytes than
-/// its pixels need: a header of a few bytes can ask for any memory.
-void require_exr(const std::filesystem::path& path, const ExrLimits& limits);
+/// An OpenEXR image that is open for reading; of a file of several images, the first. OpenEXR's C functions
+/// read it: unlike its C++ classes, they hold what a header announces against the file before they take
+/// memory for it. DWA compression is refused: version 3.1 of these functions cannot read it.
+class ExrFile {
+ public:
+  static constexpr std::size_t kChannels = 3;
+  using ChannelNames = const char* const[kChannels];
 
-/// Width and height of an open file, in pixels.
-glm::ivec2 exr_size(const Imf::InputFile& file);
+  /// Throws InputError for a file that is no OpenEXR file, is larger than the limits, or holds fewer bytes
+  /// than its pixels need.
+  ExrFile(const std::filesystem::path& path, const ExrLimits& limits);
+  ~ExrFile() { exr_finish(&context_); }
+  ExrFile(const ExrFile&) = delete;
+  ExrFile& operator=(const ExrFile&) = delete;
 
-/// Reads three float channels of an open file, interleaved, the top row first. Throws InputError if one is
-/// missing or a value is not finite.
-std::vector<float> read_exr_channels(Imf::InputFile& file, const char* const (&names)[3],
-                                     const std::filesystem::path& path);
+  /// Width and height in pixels.
+  const glm::ivec2& size() const { return size_; }
+  /// Three channels, interleaved, the top row first. Throws InputError if one is missing or a value is not
+  /// finite.
+  std::vector<float> channels(const ChannelNames& names) const;
+  /// Attributes that are strings.
+  std::map<std::string, std::string> texts() const;
 
-/// Calls `read` with the open file, after require_exr(). Errors become InputError that name the file.
-template <class Read>
-auto read_exr(const std::filesystem::path& path, const ExrLimits& limits, Read&& read) {
-  try {
-    require_exr(path, limits);
-    Imf::InputFile file(path.c_str());
-    return read(file);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw InputError(path.string() + ": cannot be read (" + first_line(error.what()) +
-                     "); allowed: an OpenEXR file with channels R, G and B");
-  }
-}
+ private:
+  struct Decoder;
+
+  static void keep_message(exr_const_context_t context, exr_result_t, const char* text);
+  [[noreturn]] void refuse(const std::string& found, const std::string& allowed) const;
+  void require(exr_result_t result) const;
+  bool is_tiled() const;
+  void require_compression() const;
+  void require_size(const ExrLimits& limits);
+  void require_bytes() const;
+  void require_channel(const char* name, const ChannelNames& names) const;
+  void require_finite(const ChannelNames& names, const std::vector<float>& values) const;
+  void read_lines(const ChannelNames& names, std::vector<float>& values) const;
+  void read_tiles(const ChannelNames& names, std::vector<float>& values) const;
+  float* pixel(std::vector<float>& values, int column, int row) const;
+  void read_chunk(const exr_chunk_info_t& chunk, const ChannelNames& names, float* first) const;
+
+  std::filesystem::path path_;
+  std::string message_;  ///< OpenEXR's, of the last error
+  exr_context_t context_ = nullptr;
+  exr_attr_box2i_t window_ = {};
+  glm::ivec2 size_{0};
+};
 
 /// Reads channels R, G and B of an OpenEXR file. Throws InputError if it cannot be read or a channel is
 /// missing.

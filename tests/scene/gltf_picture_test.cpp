@@ -132,6 +132,9 @@ TEST_F(GltfPicture, InstancesAppearEach) {
   expect_corners(triangles[1], {5, 0, 2}, {7, 0, 2}, {5, 2, 2});
   attributes["SCALE"] = file.add_accessor<float>("VEC3", 3, {1, 1, 1});
   expect_error(file, {"EXT_mesh_gpu_instancing", "one number of instances"});
+  attributes = {{"TRANSLATION",
+                 file.add("accessors", {{"componentType", 5126}, {"count", 2000000}, {"type", "VEC3"}})}};
+  expect_error(file, {"EXT_mesh_gpu_instancing", "2000000 instances", "at most 1048576"});
 }
 
 TEST_F(GltfPicture, QuantizedPositionsNeedTheirExtension) {

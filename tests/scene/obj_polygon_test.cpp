@@ -5,6 +5,7 @@
 #include <string>
 
 #include "testbench/scene/obj_mesh.hpp"
+#include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace obj_polygon_test {
@@ -55,6 +56,36 @@ TEST_F(ObjPolygonTest, cuts_concave_quads_along_the_inner_diagonal) {
     }
     EXPECT_DOUBLE_EQ(area, 2.0);
   }
+}
+
+/// A star: every `step`-th of `count` points on a circle.
+std::string star(int count, int step) {
+  std::ostringstream obj;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::acos(-1.0) * step * i / count;
+    obj << "v " << std::cos(angle) << " " << std::sin(angle) << " 0\n";
+  }
+  obj << "usemtl grey\nf";
+  for (int i = 0; i < count; ++i) obj << " " << i + 1;
+  obj << "\n";
+  return obj.str();
+}
+
+// Each edge of a star crosses 2 (step - 1) others, and each crossing becomes a vertex.
+TEST_F(ObjPolygonTest, refuses_a_polygon_whose_crossings_are_far_more_than_its_vertices) {
+  EXPECT_GT(load(star(1001, 8)).triangles.size(), 7000U);
+  test_support::expect_input_error(
+      [&] { load(star(1001, 400)); },
+      {"mesh.obj:1004", "a polygon of 1001 vertices that crosses itself too often"});
+}
+
+TEST_F(ObjPolygonTest, takes_a_comb_of_many_long_teeth) {
+  std::ostringstream obj;
+  constexpr int kTeeth = 2000;
+  for (int i = 0; i < kTeeth; ++i) obj << "v " << 3 * i << " 0 0\nv " << 3 * i + 1 << " 9000 0\n";
+  obj << "v " << 3 * kTeeth << " -1 0\nv 0 -1 0\nusemtl grey\nf";
+  for (int i = 0; i < 2 * kTeeth + 2; ++i) obj << " " << i + 1;
+  EXPECT_EQ(load(obj.str() + "\n").triangles.size(), std::size_t{2 * kTeeth});
 }
 
 // A polygon with two dents in opposite directions (an S), seen from each of its vertices.

@@ -128,6 +128,21 @@ TEST_F(Golden, ChipFilesAreRelativeToTheGrid) {
       << "the second one would take the place of the first";
 }
 
+TEST_F(Golden, ProductsThatNoMachineCanRunAreRefusedBeforeTheyAreMade) {
+  const std::string numbers = "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n";
+  std::string lists;
+  for (const char* const key :
+       {"pio.setup_cycles", "pio.per_pe_cycles", "host.latency_cycles", "ddr.ecc_cycles"})
+    lists += key + (" = " + numbers);
+  EXPECT_EQ(grid(kHead + product(lists)).runs.size(), 10000u);
+  EXPECT_EQ(
+      refusal(kHead + product(lists + "ddr.refresh_cycles = " + numbers)),
+      "grid.toml:10: ddr.refresh_cycles: found 100000 combinations with the lists above, allowed is at most "
+      "10000");
+  EXPECT_EQ(refusal(kHead + product(lists) + kOneRun),
+            "grid.toml:11: scene: found 10001 combinations with the lists above, allowed is at most 10000");
+}
+
 TEST_F(Golden, NamesOfEarlierGridsAreRefusedWithTheNewOnes) {
   for (const auto& [old, now] : {std::pair("scenes = [\"a\"]", "scene"),
                                  {"chips = [\"csx600\"]", "chip"},

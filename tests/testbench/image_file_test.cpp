@@ -8,6 +8,7 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfTiledOutputFile.h>
 
 #include <csignal>
 #include <cstdint>
@@ -70,6 +71,34 @@ fs::path rgb_file(const fs::path& path, const Imath::Box2i& window, int rows, fl
   return path;
 }
 
+/// A file of 5 x 3 pixels at (2, -1) with the values 0, 1, 2, ... as half floats, in lines or in tiles of 2
+/// x 2.
+fs::path tiled_or_not(const fs::path& path, Imf::Compression compression, bool has_tiles) {
+  const Imath::Box2i window({2, -1}, {6, 1});
+  Imf::Header header(window, window);
+  header.compression() = compression;
+  if (has_tiles) header.setTileDescription({2, 2, Imf::ONE_LEVEL});
+  std::vector<half> values;
+  for (int i = 0; i < 45; ++i) values.push_back(half(float(i)));
+  Imf::FrameBuffer buffer;
+  const char* const names[] = {"R", "G", "B"};
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    header.channels().insert(names[channel], Imf::Channel(Imf::HALF));
+    buffer.insert(names[channel],
+                  Imf::Slice::Make(Imf::HALF, &values[channel], window, 3 * sizeof(half), 15 * sizeof(half)));
+  }
+  if (has_tiles) {
+    Imf::TiledOutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+  } else {
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(3);
+  }
+  return path;
+}
+
 TEST_F(ImageFileTest, exr_of_another_size_than_a_film_is_refused_before_memory_is_taken) {
   const std::string allowed = "allowed: WIDTHxHEIGHT, each 1 to 16384";
   const fs::path wide = rgb_file(directory_ / "wide.exr", {{0, 0}, {16384, 1}}, 2, 1);
@@ -81,6 +110,30 @@ TEST_F(ImageFileTest, exr_of_another_size_than_a_film_is_refused_before_memory_i
   const fs::path hollow = rgb_file(directory_ / "hollow.exr", {{0, 0}, {16383, 16383}}, 0, 1);
   test_support::expect_input_error([&] { testbench::read_exr_rgb(hollow); },
                                    {hollow.string(), "for 268435456 pixels; allowed: a whole OpenEXR file"});
+}
+
+TEST_F(ImageFileTest, exr_attribute_that_claims_more_than_the_file_holds_is_refused_before_memory_is_taken) {
+  const fs::path path = directory_ / "claim.exr";
+  write_exr(path, small_film(), {{"note", "abc"}});
+  std::string bytes = test_support::read_file(path);
+  const std::string place("note\0string\0", 12);
+  bytes[bytes.find(place) + place.size() + 3] = 0x7f;  // 3 bytes become 2 GB
+  write("claim.exr", bytes);
+  test_support::expect_input_error([&] { testbench::read_exr_film(path); },
+                                   {path.string(), "note", "cannot be read"});
+}
+
+TEST_F(ImageFileTest, exr_of_every_lossless_compression_and_of_tiles_is_read) {
+  for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                             Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION})
+    for (const bool has_tiles : {false, true}) {
+      const fs::path path = tiled_or_not(directory_ / "form.exr", compression, has_tiles);
+      const testbench::RadianceImage image = testbench::read_exr_rgb(path);
+      ASSERT_EQ(image.width, 5);
+      ASSERT_EQ(image.height, 3);
+      for (std::size_t i = 0; i < image.rgb.size(); ++i)
+        EXPECT_EQ(image.rgb[i], float(i)) << compression << has_tiles;
+    }
 }
 
 TEST_F(ImageFileTest, exr_with_missing_or_endless_pixels_is_refused) {

@@ -154,6 +154,10 @@ TEST_F(SweepFileTest, BadInputIsNamedWithItsLine) {
   expect_error("[[axis]]\nddr.banks = { from = 1, to = \"4\", step = 1 }\n", {"ddr.banks.to", "'4'"});
   expect_error("audit.share = 2\n", {"audit.share", "'2'", "0 to 1"});
   expect_error("audit.rate = 0.1\n", {"audit.rate", "audit.seed"});
+  std::string keys;
+  for (const char* const key : {"fp64_add", "fp64_mul", "fp64_div"})
+    keys += "energy.picojoules." + std::string(key) + " = { from = 0.5, to = 1, count = 100000 }\n";
+  expect_error("[[axis]]\n" + keys, {"fp64_div: found 300000 values on all axes", "at most 200000"});
   expect_error(
       "[[axis]]\npio.setup_cycles = { from = 1, to = 90000, step = 1 }\n"
       "[[axis]]\npio.per_pe_cycles = { from = 1, to = 90000, step = 1 }\n",

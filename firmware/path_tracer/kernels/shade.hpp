@@ -191,6 +191,20 @@ inline mask shares_light(const ShadeArguments& arguments, const Material& materi
   return !is_diffuse(arguments.features.lobes, material);
 }
 
+/// Of mirrors and glass that lose nothing, the probability that a path goes on. Total reflection can hold a
+/// path within a body of glass forever; so it ends after a hundred segments on average.
+inline constexpr double kLosslessSurvival = 0.99;
+
+/// The probability that roulette lets a path go on.
+/// @param strongest channel of the sample's weight
+inline poly<double> survival_of(const ShadeArguments& arguments, const poly<std::int32_t>& depth,
+                                const BsdfSample& sample, const poly<double>& strongest) {
+  poly<double> survival = cn::min(strongest, poly<double>(arguments.max_survival));
+  if (arguments.features.lobes.smooth_specular())
+    survival = cn::select(sample.is_delta, cn::min(survival, poly<double>(kLosslessSurvival)), survival);
+  return cn::select(depth < arguments.roulette_start, poly<double>(1.0), survival);
+}
+
 /// Continues the path or ends it by Russian roulette. Returns the lanes that may reflect light.
 inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& vertex, const mask& hit,
                         const Rgb& arrived) {
@@ -205,9 +219,7 @@ inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& ver
   const BsdfSample sample = sample_bsdf(vertex.bsdf, random.direction, lobe);
 
   const poly<double> strongest = largest_channel(sample.weight) * roulette_factor(vertex.bsdf, sample);
-  const mask safe = depth < arguments.roulette_start;
-  const poly<double> survival =
-      cn::select(safe, poly<double>(1.0), cn::min(strongest, poly<double>(arguments.max_survival)));
+  const poly<double> survival = survival_of(arguments, depth, sample, strongest);
   const mask goes_on = hit & (strongest > 0.0) & (random.roulette < survival);
   const poly<double> inverse_survival = 1.0 / cn::select(goes_on, survival, poly<double>(1.0));
   const Rgb none{0.0, 0.0, 0.0};

@@ -10,9 +10,11 @@
 
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
+#include "testbench/mono_image/barycentric.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
+#include "testbench/mono_image/texture_images.hpp"
 #include "testbench/scene/film_ray.hpp"
 #include "testbench/scene/normalise.hpp"
 #include "testbench/system/error.hpp"
@@ -74,9 +76,8 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
                              std::int32_t light) {
   SurfaceRecord record;
   record.normal = to_record(glm::normalize(area_normal(triangle)));
-  // What is not reflected by a fully transmissive surface passes; nothing is diffuse there.
-  const bool is_clear = material.transmission == 1.0 && material.metallic == 0.0;
-  record.reflectance = to_record(is_clear ? material.transmission_colour : material.reflectance);
+  record.reflectance =
+      to_record(shows_transmission_colour(material) ? material.transmission_colour : material.reflectance);
   record.emission = to_record(material.emission);
   record.face = face;
   record.light = light;
@@ -312,19 +313,13 @@ path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
   const CornerNormals& corners = scene.corners.normals[index];
   path_tracer::NormalRecord record;
   const bool is_flat = corners[0] == glm::dvec3(0.0);
-  const glm::dvec3 plane = area_normal(triangle);
   if (is_flat) {
-    record.at_origin = to_record(glm::normalize(plane));
+    record.at_origin = to_record(glm::normalize(area_normal(triangle)));
     return record;
   }
-  // Barycentric coordinates are u = to_u . (p - vertex) and v = to_v . (p - vertex).
-  const glm::dvec3 edge1 = triangle.vertex[1] - triangle.vertex[0];
-  const glm::dvec3 edge2 = triangle.vertex[2] - triangle.vertex[0];
-  const double area_squared = glm::dot(plane, plane);
-  const glm::dvec3 to_u = glm::cross(edge2, plane) / area_squared;
-  const glm::dvec3 to_v = glm::cross(plane, edge1) / area_squared;
-  const glm::dmat3 slope = glm::outerProduct(corners[1] - corners[0], to_u) +
-                           glm::outerProduct(corners[2] - corners[0], to_v);
+  const Barycentric barycentric(triangle);
+  const glm::dmat3 slope = glm::outerProduct(corners[1] - corners[0], barycentric.to_u) +
+                           glm::outerProduct(corners[2] - corners[0], barycentric.to_v);
   record.at_origin = to_record(corners[0] - slope * triangle.vertex[0]);
   record.along_x = to_record(slope[0]);
   record.along_y = to_record(slope[1]);
@@ -344,6 +339,17 @@ void put_material(MonoImage& image, std::size_t triangle, const Material& materi
            path_tracer::CoatRecord{material.clearcoat, material.clearcoat_roughness});
   put_tail(image, triangle, sizes.sheen,
            path_tracer::SheenRecord{to_record(material.sheen_colour), material.sheen_roughness});
+}
+
+void put_textures(MonoImage& image, const TextureImages& textures, std::size_t triangles) {
+  const path_tracer::TextureSlots& slots = image.layout.features.textures;
+  if (!slots.any()) return;
+  const cn::MonoAddress first = image.layout.textures.address;
+  textures.write(image.bytes.data() + first);
+  for (int slot = 0; slot < path_tracer::kTextureSlots; ++slot)
+    for (std::size_t i = 0; slots.uses[slot] && i < triangles; ++i)
+      put_tail(image, i, image.layout.sizes.texture[slot],
+               textures.record_of(i, path_tracer::TextureSlot(slot), first));
 }
 
 void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& lights) {
@@ -378,10 +384,13 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   TreeImage tree;
   if (config.uses_tree()) tree = make_tree(triangles, reach, config);
 
+  const TextureImages textures(scene, config.features.textures);
+
   path_tracer::SceneCounts counts;
   counts.triangles = static_cast<int>(scene.triangles.size());
   counts.lights = static_cast<int>(lights.records.size());
   counts.tree_slots = static_cast<int>(tree.slots);
+  counts.texture_bytes = textures.bytes();
   counts.has_layers = triangles.layers.layers().any;
   MonoImage image;
   image.layout = path_tracer::make_layout(counts, num_pes, config);
@@ -396,6 +405,7 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
     put_triangle(image, triangles, order[place], place);
   if (config.uses_tree()) put_light_runs(image, triangles, lights);
   put_surfaces(image, triangles, lights);
+  put_textures(image, textures, triangles.count());
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
   if (config.uses_tree())

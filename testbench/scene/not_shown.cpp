@@ -12,9 +12,15 @@ struct NotShown {
 
 /// What materials have and the firmware does not render.
 constexpr NotShown kNotShown[] = {
-    {"a texture of a material is left out, its factor alone counts", has_texture},
+    {"a texture of a material's emission, normal or alpha is left out, its factor alone counts",
+     [](const Material& material) {
+       const MaterialTextures& textures = material.textures;
+       return textures.emission || textures.normal || textures.alpha;
+     }},
     {"a material of partial coverage (alpha) is shown as opaque",
-     [](const Material& material) { return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0; }},
+     [](const Material& material) {
+       return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0;
+     }},
     {"a colour of a dielectric's reflection is shown as its strongest channel in grey",
      [](const Material& material) {
        const glm::dvec3& colour = material.specular_colour;
@@ -22,8 +28,7 @@ constexpr NotShown kNotShown[] = {
      }},
     {"a colour of transmission is left out, what passes has the base colour",
      [](const Material& material) {
-       const bool is_clear = material.transmission == 1.0 && material.metallic == 0.0;
-       return material.transmission > 0.0 && !is_clear &&
+       return material.transmission > 0.0 && !shows_transmission_colour(material) &&
               material.transmission_colour != material.reflectance;
      }},
 };
@@ -35,7 +40,8 @@ void note_what_is_not_shown(Scene& scene, const std::string& file) {
   for (const Triangle& triangle : scene.triangles) is_used[std::size_t(triangle.material)] = true;
   for (const NotShown& kind : kNotShown) {
     std::size_t times = 0;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) times += is_used[i] && kind.has(scene.materials[i]);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+      times += is_used[i] && kind.has(scene.materials[i]);
     scene.notes.add(kind.text, file, times);
   }
   scene.notes.add("the environment's image is left out", file, scene.environment.image ? 1 : 0);

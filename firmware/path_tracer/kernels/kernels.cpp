@@ -5,6 +5,7 @@
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/shade.hpp"
+#include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/prefilter/prefilter_search.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
@@ -278,6 +279,7 @@ const Kernels& PATH_TRACER_KERNELS() {
   static constexpr Kernels table{
       cn::kernel<IntersectArguments, intersect>("intersect"),
       cn::kernel<ScatterArguments, scatter>("scatter"),
+      cn::kernel<LookUpArguments, look_up>("look_up"),
       cn::kernel<ShadeArguments, shade>("shade"),
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),

@@ -4,6 +4,7 @@
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
+#include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "firmware/path_tracer/materials/sample_bsdf.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
@@ -27,6 +28,20 @@ struct ShadedVertex {
   /// Where hits and shadow rays share the light. Elsewhere it comes by shadow rays alone.
   mask shares_light;
 };
+
+/// Multiplies a material by what its textures show at the hit.
+inline void apply_textures(const ShadeArguments& arguments, Material& material) {
+  const TexturesAtHit textures(arguments.surface, arguments.sizes, arguments.look_ups);
+  const TextureSlots& slots = arguments.features.textures;
+  const auto multiply = [&](TextureSlot slot, poly<double>& field) {
+    if (slots.has(slot)) field.assign_all_lanes(field * textures.channel(slot));
+  };
+  if (slots.has(TextureSlot::reflectance))
+    bsdf_detail::assign(material.base_color, material.base_color * textures.reflectance());
+  multiply(TextureSlot::metallic, material.metallic);
+  multiply(TextureSlot::roughness, material.roughness);
+  multiply(TextureSlot::transmission, material.transmission);
+}
 
 /// The BSDF's parameters at the hit, seen from the side that the segment arrived from.
 inline Material read_material(const ShadeArguments& arguments, const mask& front) {
@@ -59,6 +74,7 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
     bsdf_detail::assign(material.sheen_color, record.get(&SheenRecord::colour));
     material.sheen_roughness.assign_all_lanes(record.get(&SheenRecord::roughness));
   }
+  if (arguments.features.textures.any()) apply_textures(arguments, material);
   return material;
 }
 
@@ -151,10 +167,10 @@ inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
   return cn::select(front, Rgb{one, one, one}, transmittance(coefficient, distance));
 }
 
-/// The normal of shading on the viewer's side. Where interpolation turns it away from the viewer, it is that of
-/// the triangle: a surface that is seen is not seen from behind.
-inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& position, const Direction3& normal,
-                                 const mask& front, const Direction3& to_viewer) {
+/// The normal of shading on the viewer's side. Where interpolation turns it away from the viewer, it is that
+/// of the triangle: a surface that is seen is not seen from behind.
+inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& position,
+                                 const Direction3& normal, const mask& front, const Direction3& to_viewer) {
   if (arguments.sizes.normal == RecordSizes::kNone) return normal;
   const auto record = tail<NormalRecord>(arguments.surface, arguments.sizes.normal);
   const Direction3 along = record.get(&NormalRecord::along_x) * position.x +

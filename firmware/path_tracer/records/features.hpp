@@ -32,17 +32,37 @@ struct Lobes {
   constexpr bool evaluable() const { return cosine() || rough_specular() || coat || sheen; }
 };
 
+/// What textures of materials multiply; a scene's textures are looked up for each of these that a material
+/// uses. Reflectance has sRGB texels of three channels, the others have one linear channel.
+enum class TextureSlot { reflectance, metallic, roughness, transmission };
+inline constexpr int kTextureSlots = 4;
+
+/// The slots that materials of a scene have textures for.
+struct TextureSlots {
+  bool uses[kTextureSlots] = {};
+
+  constexpr bool has(TextureSlot slot) const { return uses[int(slot)]; }
+  constexpr bool any() const {
+    bool any_slot = false;
+    for (const bool uses_slot : uses) any_slot = any_slot || uses_slot;
+    return any_slot;
+  }
+};
+
 struct Features {
   Lobes lobes{true};
   bool lights = true;        ///< triangles that emit, to aim shadow rays at
   bool environment = false;  ///< light that arrives from outside
   bool normals = false;      ///< that vary over triangles
+  TextureSlots textures;
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 
   /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
   /// alone.
-  constexpr bool plain() const { return lobes.only_diffuse() && !environment && !normals && !multiple_importance; }
+  constexpr bool plain() const {
+    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !multiple_importance;
+  }
 };
 
 }  // namespace path_tracer

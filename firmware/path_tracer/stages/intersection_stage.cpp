@@ -6,7 +6,7 @@ namespace path_tracer {
 
 int IntersectionStage::load_bytes(const ProgramConfig& config) {
   const RecordSizes sizes(config.features);
-  const int bytes = sizes.hit + sizes.surface + sizes.path;
+  const int bytes = sizes.hit + sizes.surface + sizes.look_ups + sizes.path;
   return config.casts_shadow_rays() ? bytes + int{sizeof(LightRecord)} : bytes;
 }
 
@@ -22,6 +22,7 @@ IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
   const RecordSizes& sizes = context_.layout.sizes;
   loads.hit = cutter.take_bytes<HitRecord>(sizes.hit);
   loads.surface = cutter.take_bytes<SurfaceRecord>(sizes.surface);
+  loads.look_ups = cutter.take_bytes<TextureLookUp>(sizes.look_ups);
   BufferCutter same_place(cutter);
   loads.path = cutter.take_bytes<PathRecord>(sizes.path);
   loads.light = cutter.take<LightRecord>();
@@ -56,6 +57,30 @@ void IntersectionStage::load(std::uint64_t step, int block) {
   load_block(step, block, to.lighting, context_.layout.lighting_bin, bin.shadow);
 }
 
+void IntersectionStage::prepare(std::uint64_t step, int block) {
+  context_.loads.wait(step);
+  for (int slot = 0; slot < kTextureSlots; ++slot)
+    if (context_.config.features.textures.uses[slot]) load_texels(step, block, TextureSlot(slot));
+}
+
+void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot slot) {
+  const Loads from = loads(step);
+  const RecordSizes& sizes = context_.layout.sizes;
+  const Bins::Block& bin = bin_block(block);
+  LaneMask needs;
+  LookUpArguments arguments;
+  arguments.hit = from.hit;
+  arguments.texture = PolyPointer<TextureRecord>(from.surface.span().offset_bytes + sizes.texture[int(slot)]);
+  arguments.footprint_bytes = footprint_bytes(slot);
+  arguments.look_up =
+      PolyPointer<TextureLookUp>(from.look_ups.span().offset_bytes + sizes.look_up[int(slot)]);
+  arguments.needs = &needs;
+  context_.machine.run(context_.kernels.look_up, arguments, bin.hit_something.without(bin.shadow));
+  const cn::PolySpan look_up = arguments.look_up.span();
+  context_.loads.copy_m2p(step, block, {look_up.offset_bytes + look_up.size_bytes, footprint_bytes(slot)},
+                          context_.machine.places_in(arguments.look_up.field(&TextureLookUp::place)), needs);
+}
+
 void IntersectionStage::process(std::uint64_t step, int block) {
   const Loads from = loads(step);
   const Saves to = saves(step);
@@ -88,17 +113,19 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   if (context_.config.features.plain()) {
     context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
   } else {
-    shade(arguments, bin.segments());
+    shade(from, arguments, bin.segments());
   }
 }
 
-void IntersectionStage::shade(const ScatterArguments& arguments, const LaneMask& segments) {
+void IntersectionStage::shade(const Loads& from, const ScatterArguments& arguments,
+                              const LaneMask& segments) {
   ShadeArguments shading;
   static_cast<ScatterArguments&>(shading) = arguments;
   shading.features = context_.config.features;
   shading.sizes = context_.layout.sizes;
   shading.estimator = context_.config.estimator;
   shading.environment = context_.layout.environment;
+  shading.look_ups = from.look_ups;
   context_.machine.run(context_.kernels.shade, shading, segments);
 }
 

@@ -63,7 +63,8 @@ inline testbench::Scene textured_squares(testbench::FilmSize film) {
   for (int i = 0; i < 6; ++i) {
     testbench::Material material{"square", {0.9, 0.7, 0.5}};
     material.specular = i % 2;
-    material.metallic = material.roughness = 1.0;
+    material.metallic = i > 3 ? 0.6 : 1.0;
+    material.roughness = 1.0;
     if (i > 3) material.transmission = 0.9;
     testbench::MaterialTextures& textures = material.textures;
     if (i != 2) textures.reflectance.texture = 1;

@@ -12,6 +12,7 @@
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/barycentric.hpp"
 #include "testbench/mono_image/faces.hpp"
+#include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
 #include "testbench/mono_image/texture_images.hpp"
@@ -96,6 +97,7 @@ struct Emitter {
   glm::dvec3 edge1;
   glm::dvec3 edge2;
   LightShape shape;
+  glm::dvec3 emission;  ///< mean radiance, estimated
   std::int32_t material;
   std::int32_t face;
   std::vector<std::size_t> triangles;
@@ -107,8 +109,8 @@ double area(const Emitter& emitter) {
 }
 
 /// The radiant power of a light, up to a common factor. Lights are chosen in proportion to it.
-double power(const Emitter& emitter, const Scene& scene) {
-  const glm::dvec3& emission = scene.materials[std::size_t(emitter.material)].emission;
+double power(const Emitter& emitter) {
+  const glm::dvec3& emission = emitter.emission;
   return area(emitter) * (emission.x + emission.y + emission.z);
 }
 
@@ -122,6 +124,7 @@ std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
   for (int i = 0; i < 3; ++i) {
     // The right angle lies at a corner of `a`, the opposite corner is one of `b`.
     Emitter joined = a;
+    joined.emission = 0.5 * (a.emission + b.emission);
     joined.vertex = corners_a[i];
     joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
     joined.edge2 = corners_a[(i + 2) % 3] - joined.vertex;
@@ -143,6 +146,7 @@ std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
 }
 
 std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::int32_t>& faces) {
+  const MeanEmission emission(scene);
   std::vector<Emitter> emitters;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     const Triangle& triangle = scene.triangles[i];
@@ -150,10 +154,11 @@ std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::in
                           triangle.vertex[1] - triangle.vertex[0],
                           triangle.vertex[2] - triangle.vertex[0],
                           LightShape::triangle,
+                          emission.of_triangle(i),
                           triangle.material,
                           faces[i],
                           {i}};
-    if (power(emitter, scene) > 0) emitters.push_back(emitter);
+    if (power(emitter) > 0) emitters.push_back(emitter);
   }
   return emitters;
 }
@@ -175,7 +180,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
   std::vector<Emitter> emitters = find_emitters(scene, faces);
   if (sampling == path_tracer::LightSampling::solid_angle) emitters = join_rectangles(emitters);
   double total_power = 0;
-  for (const Emitter& emitter : emitters) total_power += power(emitter, scene);
+  for (const Emitter& emitter : emitters) total_power += power(emitter);
   if (!(total_power > 0) && scene.environment.is_lit()) return {};
   if (!(total_power > 0))
     throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
@@ -183,7 +188,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
   Lights lights;
   double power_so_far = 0;
   for (const Emitter& emitter : emitters) {
-    const double pdf = power(emitter, scene) / total_power / area(emitter);
+    const double pdf = power(emitter) / total_power / area(emitter);
     LightRecord record;
     record.vertex = to_record(emitter.vertex);
     record.edge1 = to_record(emitter.edge1);
@@ -194,7 +199,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
     record.shape = static_cast<std::int32_t>(emitter.shape);
     lights.records.push_back(record);
     lights.triangles.push_back(emitter.triangles);
-    power_so_far += power(emitter, scene);
+    power_so_far += power(emitter);
     lights.cdf.push_back(power_so_far / total_power);
   }
   return lights;

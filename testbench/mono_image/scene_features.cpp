@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/path_tracer/materials/material.hpp"
+#include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/texture_images.hpp"
 
 namespace testbench {
@@ -45,6 +46,7 @@ void add_textures(const Material& material, const path_tracer::Lobes& lobes,
     if (is_read && shown_texture(material, slot)) slots.uses[int(slot)] = true;
   };
   add(path_tracer::TextureSlot::reflectance, true);
+  add(path_tracer::TextureSlot::emission, true);
   add(path_tracer::TextureSlot::metallic, lobes.specular());
   add(path_tracer::TextureSlot::roughness, lobes.specular());
   add(path_tracer::TextureSlot::transmission, lobes.transmissive());
@@ -63,10 +65,10 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
     features.lobes.diffuse = true;
   for (std::size_t i = 0; i < is_used.size(); ++i)
     if (is_used[i]) add_textures(scene.materials[i], features.lobes, features.textures);
-  features.lights =
-      std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
-        return scene.materials[std::size_t(triangle.material)].emission != glm::dvec3(0.0);
-      });
+  const MeanEmission emission(scene);
+  features.lights = std::any_of(
+      scene.triangles.begin(), scene.triangles.end(),
+      [&](const Triangle& triangle) { return emission.of_material(triangle.material) != glm::dvec3(0.0); });
   features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();

@@ -104,6 +104,8 @@ const TextureReference& shown_texture(const Material& material, TextureSlot slot
       return shows_transmission_colour(material) && material.transmission_colour != material.reflectance
                  ? kNone
                  : material.textures.reflectance;
+    case TextureSlot::emission:
+      return material.textures.emission;
     case TextureSlot::metallic:
       return material.textures.metallic;
     case TextureSlot::roughness:
@@ -144,7 +146,7 @@ TextureImages::TextureImages(const Scene& scene, const path_tracer::TextureSlots
 }
 
 TextureImages::Use TextureImages::use_of(const TextureReference& reference, TextureSlot slot) {
-  return {reference.texture, slot == TextureSlot::reflectance ? kColour : reference.channel};
+  return {reference.texture, path_tracer::is_colour(slot) ? kColour : reference.channel};
 }
 
 void TextureImages::write(std::uint8_t* to) const {
@@ -169,8 +171,8 @@ TextureRecord TextureImages::record_of(std::size_t triangle, TextureSlot slot, c
   const TextureReference& reference = shown_texture(scene_.materials[std::size_t(of.material)], slot);
   if (!reference) return record;
   const Texture& texture = scene_.textures[std::size_t(reference.texture)];
-  if (texture.encoding != (slot == TextureSlot::reflectance ? TexelEncoding::srgb : TexelEncoding::linear))
-    throw std::logic_error(texture.name + ": reflectance has sRGB texels, other slots have linear ones");
+  if (texture.encoding != (path_tracer::is_colour(slot) ? TexelEncoding::srgb : TexelEncoding::linear))
+    throw std::logic_error(texture.name + ": colours have sRGB texels, other slots have linear ones");
   const auto& coordinates = scene_.corners.coordinates[std::size_t(reference.coordinate_set)];
   CornerPlaces x{};
   CornerPlaces y{};

@@ -12,11 +12,8 @@ struct NotShown {
 
 /// What materials have and the firmware does not render.
 constexpr NotShown kNotShown[] = {
-    {"a texture of a material's emission, normal or alpha is left out, its factor alone counts",
-     [](const Material& material) {
-       const MaterialTextures& textures = material.textures;
-       return textures.emission || textures.normal || textures.alpha;
-     }},
+    {"a texture of a material's normal or alpha is left out",
+     [](const Material& material) { return material.textures.normal || material.textures.alpha; }},
     {"a material of partial coverage (alpha) is shown as opaque",
      [](const Material& material) {
        return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0;

@@ -99,7 +99,8 @@ TEST(SoundFirmware, RunsCleanWithTexturesAtEveryLevelOfBuffering) {
         for (const bool loads : {false, true}) {
           ProgramConfig config = checked_program(program, traversal, n, std::max(1, n));
           config.buffer_loads = loads;
-          expect_clean(test_support::textured_squares({9, 7}), config, 8);
+          for (const bool has_textured_light : {false, true})
+            expect_clean(test_support::textured_squares({9, 7}, has_textured_light), config, 8);
         }
 }
 

@@ -91,7 +91,7 @@ class Textures : public test_support::StripFixture {
     PerPe<double> red = per_pe<double>(), green = red, blue = red, roughness = red;
     run([&] {
       const path_tracer::TexturesAtHit textures(surface, sizes_, look_ups);
-      const path_tracer::Rgb colour = textures.reflectance();
+      const path_tracer::Rgb colour = textures.colour(TextureSlot::reflectance);
       test_support::store(red, colour.x);
       test_support::store(green, colour.y);
       test_support::store(blue, colour.z);

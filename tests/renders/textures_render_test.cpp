@@ -73,36 +73,138 @@ TEST_F(TexturedRenders, LinearFilterHasItsMean) {
 }
 
 TEST_F(TexturedRenders, AreTheSameForEveryTraversalDepthOfBufferingAndWidth) {
-  const Scene scene = test_support::textured_squares({16, 12});
-  for (const Program program : {Program::segments, Program::direct, Program::full}) {
-    const std::string expected =
-        testbench::render_natively(scene, options_for(program, Traversal::brute_force, 1)).film.sha256();
-    for (const Traversal traversal : kTraversals) {
-      for (const int n : {0, 1, 2, 3, 8}) {
-        RenderOptions options = options_for(program, traversal, n);
-        EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), expected)
-            << "program " << int(program) << ", traversal " << int(traversal) << ", n " << n;
-        options.chip.chip.pes = n == 2 ? 16 : 256;
-        EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), expected)
-            << "program " << int(program) << ", traversal " << int(traversal) << ", n " << n << ", "
-            << options.chip.chip.pes << " PEs";
+  for (const bool has_textured_light : {false, true}) {
+    const Scene scene = test_support::textured_squares({16, 12}, has_textured_light);
+    for (const Program program : {Program::segments, Program::direct, Program::full}) {
+      const std::string expected =
+          testbench::render_natively(scene, options_for(program, Traversal::brute_force, 1)).film.sha256();
+      for (const Traversal traversal : kTraversals) {
+        for (const int n : {0, 1, 2, 3, 8}) {
+          RenderOptions options = options_for(program, traversal, n);
+          EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), expected)
+              << "program " << int(program) << ", traversal " << int(traversal) << ", n " << n;
+          options.chip.chip.pes = n == 2 ? 16 : 256;
+          EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), expected)
+              << "program " << int(program) << ", traversal " << int(traversal) << ", n " << n << ", "
+              << options.chip.chip.pes << " PEs";
+        }
       }
     }
   }
 }
 
 TEST_F(TexturedRenders, AreTheSameOnTheChipWithoutHazards) {
-  const Scene scene = test_support::textured_squares({16, 12});
-  for (const Traversal traversal : kTraversals) {
-    for (const int n : {0, 1, 2, 3}) {
-      RenderOptions options = options_for(Program::full, traversal, n);
-      const std::string expected = testbench::render_natively(scene, options).film.sha256();
-      options.check_hazards = true;
-      new_context();
-      EXPECT_EQ(testbench::render_on_chip(scene, options).film.sha256(), expected)
-          << "traversal " << int(traversal) << ", n " << n;
+  for (const bool has_textured_light : {false, true}) {
+    const Scene scene = test_support::textured_squares({16, 12}, has_textured_light);
+    for (const Traversal traversal : kTraversals) {
+      for (const int n : {0, 1, 2, 3}) {
+        RenderOptions options = options_for(Program::full, traversal, n);
+        const std::string expected = testbench::render_natively(scene, options).film.sha256();
+        options.check_hazards = true;
+        new_context();
+        EXPECT_EQ(testbench::render_on_chip(scene, options).film.sha256(), expected)
+            << "traversal " << int(traversal) << ", n " << n;
+      }
     }
   }
+}
+
+/// A lamp whose texels the camera sees one by one.
+TEST_F(TexturedRenders, EveryPixelShowsWhatItsTexelEmits) {
+  Scene scene = test_support::textured_square({8, 6}, TextureFilter::nearest);
+  scene.environment.constant = glm::dvec3(0.0);
+  testbench::Material& lamp = scene.materials[0];
+  lamp.textures.emission = lamp.textures.reflectance;
+  lamp.textures.reflectance = {};
+  lamp.reflectance = glm::dvec3(0.0);
+  lamp.emission = {5.0, 2.0, 0.5};
+  for (const Program program : {Program::segments, Program::full}) {
+    const testbench::Film film =
+        testbench::render_natively(scene, options_for(program, Traversal::refill, 1)).film;
+    for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
+      const glm::dvec4 texel = testbench::texel_at(scene.textures[0], pixel % 8, pixel / 8);
+      for (int channel = 0; channel < 3; ++channel) {
+        const double expected = lamp.emission[channel] * texel[channel];
+        EXPECT_NEAR(film.mean(pixel)[channel], expected, 2.3e-7 * expected) << pixel;
+      }
+    }
+  }
+}
+
+struct Mean {
+  glm::dvec3 mean{0.0};
+  glm::dvec3 variance{0.0};
+};
+
+Mean mean_of(const Scene& scene, const RenderOptions& options) {
+  const testbench::Film film = testbench::render_natively(scene, options).film;
+  Mean result;
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    result.mean += film.mean(pixel) / double(film.pixel_count());
+    result.variance +=
+        film.variance_of_mean(pixel) / (double(film.pixel_count()) * double(film.pixel_count()));
+  }
+  return result;
+}
+
+void expect_equal_means(const Mean& a, const Mean& b) {
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_GT(a.mean[channel], 0.0);
+    EXPECT_NEAR(a.mean[channel], b.mean[channel], 6.0 * std::sqrt(a.variance[channel] + b.variance[channel]));
+  }
+}
+
+/// Light that rays meet by chance needs no choice of lights, which textures take part in, and must be as much
+/// as light that rays are aimed at.
+TEST_F(TexturedRenders, LightOfTexelsIsTheSameByEveryEstimator) {
+  const Scene scene = test_support::textured_squares({8, 6}, true);
+  RenderOptions options = options_for(Program::segments, Traversal::brute_force, 1);
+  options.work.samples = 4096;
+  const Mean by_chance = mean_of(scene, options);
+  options.program.program = Program::full;
+  for (const path_tracer::Estimator estimator :
+       {path_tracer::Estimator::light, path_tracer::Estimator::mis, path_tracer::Estimator::per_lobe}) {
+    for (const path_tracer::LightSampling sampling :
+         {path_tracer::LightSampling::area, path_tracer::LightSampling::solid_angle}) {
+      options.program.estimator = estimator;
+      options.program.light_sampling = sampling;
+      expect_equal_means(mean_of(scene, options), by_chance);
+    }
+  }
+}
+
+/// A plane below a square light of which a texture lights one half, against a light of half the size. The
+/// other half's triangles emit where the texture says, and are not missed where they emit nothing.
+TEST_F(TexturedRenders, HalfALightIsALightOfHalfTheSize) {
+  const auto under_light = [](double from_x, bool is_textured) {
+    Scene scene = test_support::textured_square({6, 6}, TextureFilter::nearest);
+    scene.environment.constant = glm::dvec3(0.0);
+    scene.materials[0].textures = {};
+    scene.materials[0].reflectance = glm::dvec3(0.6);
+    scene.materials.push_back({"light", glm::dvec3(0.0), glm::dvec3(4.0, 3.0, 2.0)});
+    scene.textures = {{"half", testbench::TexelEncoding::srgb, {2, 1, 1, {255, 0}}}};
+    testbench::TextureReference& reference = scene.materials[1].textures.emission;
+    if (is_textured) reference.texture = 0;
+    reference.filter = TextureFilter::nearest;
+    // It faces down, above the camera. Coordinate u falls from 1 to 0 along x.
+    test_support::add_textured_square(scene, {{{1, -1, 6}, {from_x, -1, 6}, {from_x, 1, 6}, {1, 1, 6}}}, 1);
+    return scene;
+  };
+  RenderOptions options = options_for(Program::full, Traversal::brute_force, 1);
+  options.work.samples = 2048;
+  const Mean half = mean_of(under_light(0.0, false), options);
+  expect_equal_means(mean_of(under_light(-1.0, true), options), half);
+}
+
+/// A texture without light makes no lights, and the program casts no shadow rays to them.
+TEST_F(TexturedRenders, BlackLightsAreNone) {
+  Scene scene = test_support::textured_squares({8, 6}, true);
+  const path_tracer::ProgramConfig config;
+  EXPECT_TRUE(testbench::features_of(scene, config).lights);
+  scene.textures[1].image.texels.assign(scene.textures[1].image.texels.size(), 0);
+  EXPECT_FALSE(testbench::features_of(scene, config).lights);
+  const RenderOptions options = options_for(Program::full, Traversal::refill, 1);
+  EXPECT_EQ(testbench::render_natively(scene, options).counts.shadow_rays, 0u);
 }
 
 /// A white texel is exactly 1 where channels are linear.

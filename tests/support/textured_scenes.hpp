@@ -50,7 +50,7 @@ inline testbench::Scene textured_square(testbench::FilmSize film, testbench::Tex
 }
 
 /// Leaning squares with textures in every slot, wrapped and filtered in every way, under a sky and a light.
-inline testbench::Scene textured_squares(testbench::FilmSize film) {
+inline testbench::Scene textured_squares(testbench::FilmSize film, bool has_textured_light = false) {
   using testbench::TexelEncoding;
   using testbench::TextureWrap;
   testbench::Scene scene = textured_square(film, testbench::TextureFilter::linear);
@@ -86,6 +86,7 @@ inline testbench::Scene textured_squares(testbench::FilmSize film) {
         scene, {{{x, -0.8, z}, {x + 0.6, -0.7, z + 0.3}, {x + 0.6, 0.7, z + 0.2}, {x, 0.8, z - 0.1}}}, i + 1);
   }
   scene.materials.push_back({"light", glm::dvec3(0.0), glm::dvec3(3.0)});
+  if (has_textured_light) scene.materials.back().textures.emission.texture = 1;
   add_textured_square(scene, {{{-1, 2, 3}, {-1, 2, 0}, {1, 2, 0}, {1, 2, 3}}}, 7);
   return scene;
 }

@@ -112,8 +112,8 @@ mask is_light(const IlluminateArguments& arguments) {
 
 void illuminate(const IlluminateArguments& arguments) {
   const mask sees = (arguments.hit.get(&HitRecord::hit) != 0) & is_light(arguments);
-  const vec3<poly<double>> light =
-      arguments.surface.get(&SurfaceRecord::emission) * arguments.lighting.get(&LightingRecord::weight);
+  const vec3<poly<double>> light = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups) *
+                                   arguments.lighting.get(&LightingRecord::weight);
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
   arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
 }

@@ -51,7 +51,7 @@ struct ScatterArguments {
   LaneMask* casts = nullptr;  ///< the slot's next ray is the shadow ray
 };
 
-/// Intersection stage, segments, after their loads: the texels that a texture shows at the hit.
+/// Intersection stage, after the first loads: the texels that a texture shows at the hit.
 struct LookUpArguments {
   PolyPointer<HitRecord> hit;
   PolyPointer<TextureRecord> texture;
@@ -75,6 +75,8 @@ struct IlluminateArguments {
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<LightingRecord> lighting;
   bool is_in_layers = false;
+  RecordSizes sizes{Features{}};
+  PolyPointer<TextureLookUp> look_ups;
   PolyPointer<DirectLightRecord> direct_light;
 };
 

@@ -37,7 +37,7 @@ inline void apply_textures(const ShadeArguments& arguments, Material& material) 
     if (slots.has(slot)) field.assign_all_lanes(field * textures.channel(slot));
   };
   if (slots.has(TextureSlot::reflectance))
-    bsdf_detail::assign(material.base_color, material.base_color * textures.reflectance());
+    bsdf_detail::assign(material.base_color, material.base_color * textures.colour(TextureSlot::reflectance));
   multiply(TextureSlot::metallic, material.metallic);
   multiply(TextureSlot::roughness, material.roughness);
   multiply(TextureSlot::transmission, material.transmission);
@@ -248,7 +248,8 @@ inline void shade(const ShadeArguments& arguments) {
   const Direction3 normal = cn::select(front, surface_normal, surface_normal * -1.0);
   const Rgb arrived = absorb(arguments, front);
 
-  const Rgb emission = arguments.surface.get(&SurfaceRecord::emission) * weight_of_hit(arguments, normal);
+  const Rgb emission = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups) *
+                       weight_of_hit(arguments, normal);
   const Rgb none{0.0, 0.0, 0.0};
   const Rgb outside = arguments.features.environment
                           ? Rgb{arguments.environment.x, arguments.environment.y, arguments.environment.z}

@@ -125,19 +125,18 @@ class TexturesAtHit {
     return cn::select(has_texture(slot), value, poly<double>(1.0));
   }
 
-  /// The factor of reflectance.
-  Rgb reflectance() const {
-    constexpr TextureSlot kSlot = TextureSlot::reflectance;
+  /// The factor of a slot that is_colour().
+  Rgb colour(TextureSlot slot) const {
     const poly<double> one = 1.0;
-    if (!sizes_.has_texture(kSlot)) return {one, one, one};
-    const auto footprint = tail<ColourFootprint>(look_up_of(kSlot));
-    const texture_detail::Shares of_texels = shares(kSlot);
+    if (!sizes_.has_texture(slot)) return {one, one, one};
+    const auto footprint = tail<ColourFootprint>(look_up_of(slot));
+    const texture_detail::Shares of_texels = shares(slot);
     const auto filtered = [&](std::uint32_t ColourFootprint::*channel) {
       return texture_detail::filter(footprint.get(channel), of_texels, texture_detail::linear_of_srgb);
     };
     const Rgb value{filtered(&ColourFootprint::red), filtered(&ColourFootprint::green),
                     filtered(&ColourFootprint::blue)};
-    return cn::select(has_texture(kSlot), value, Rgb{one, one, one});
+    return cn::select(has_texture(slot), value, Rgb{one, one, one});
   }
 
  private:
@@ -157,5 +156,13 @@ class TexturesAtHit {
   const RecordSizes& sizes_;
   PolyPointer<TextureLookUp> look_ups_;
 };
+
+/// The radiance that the surface emits from its front.
+inline Rgb emission_at_hit(const PolyPointer<SurfaceRecord>& surface, const RecordSizes& sizes,
+                           const PolyPointer<TextureLookUp>& look_ups) {
+  const Rgb emission = surface.get(&SurfaceRecord::emission);
+  if (!sizes.has_texture(TextureSlot::emission)) return emission;
+  return emission * TexturesAtHit(surface, sizes, look_ups).colour(TextureSlot::emission);
+}
 
 }  // namespace path_tracer

@@ -33,9 +33,12 @@ struct Lobes {
 };
 
 /// What textures of materials multiply; a scene's textures are looked up for each of these that a material
-/// uses. Reflectance has sRGB texels of three channels, the others have one linear channel.
-enum class TextureSlot { reflectance, metallic, roughness, transmission };
-inline constexpr int kTextureSlots = 4;
+/// uses. Colours have sRGB texels of three channels, the others have one linear channel.
+enum class TextureSlot { reflectance, emission, metallic, roughness, transmission };
+inline constexpr int kTextureSlots = 5;
+constexpr bool is_colour(TextureSlot slot) {
+  return slot == TextureSlot::reflectance || slot == TextureSlot::emission;
+}
 
 /// The slots that materials of a scene have textures for.
 struct TextureSlots {

@@ -85,7 +85,7 @@ struct ColourFootprint {
 };
 
 constexpr int footprint_bytes(TextureSlot slot) {
-  return slot == TextureSlot::reflectance ? int{sizeof(ColourFootprint)} : int{sizeof(ChannelFootprint)};
+  return is_colour(slot) ? int{sizeof(ColourFootprint)} : int{sizeof(ChannelFootprint)};
 }
 
 /// In SRAM for each texture slot of the scene, from the choice of the texel to the filter; its footprint

@@ -48,13 +48,26 @@ void IntersectionStage::load(std::uint64_t step, int block) {
   const LaneMask segments = bin.segments();
   const RecordSizes& sizes = context_.layout.sizes;
   load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live, sizes.hit);
-  context_.loads.copy_m2p(step, block, with_tail(to.surface, sizes.surface),
-                          context_.machine.places_in(bin.surface_place), bin.hit_something);
+  load_surfaces(step, block);
   load_block(step, block, to.path, context_.layout.path_bin, segments, sizes.path);
   if (!context_.config.casts_shadow_rays()) return;
   context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),
                           segments);
   load_block(step, block, to.lighting, context_.layout.lighting_bin, bin.shadow);
+}
+
+/// A shadow ray needs no more of a tail than the texture of the light that it hit.
+void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
+  const Loads to = loads(step);
+  const int bytes = context_.layout.sizes.surface;
+  const Bins::Block& bin = bin_block(block);
+  const cn::MonoPlaces places = context_.machine.places_in(bin.surface_place);
+  const bool spares_tails = context_.config.casts_shadow_rays() && bytes > to.surface.size_bytes() &&
+                            !context_.config.features.textures.has(TextureSlot::emission);
+  const LaneMask with_tails = spares_tails ? bin.hit_something.without(bin.shadow) : bin.hit_something;
+  context_.loads.copy_m2p(step, block, with_tail(to.surface, bytes), places, with_tails);
+  if (spares_tails)
+    context_.loads.copy_m2p(step, block, to.surface.span(), places, bin.hit_something.without(with_tails));
 }
 
 void IntersectionStage::prepare(std::uint64_t step, int block) {
@@ -75,7 +88,9 @@ void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot s
   arguments.look_up =
       PolyPointer<TextureLookUp>(from.look_ups.span().offset_bytes + sizes.look_up[int(slot)]);
   arguments.needs = &needs;
-  context_.machine.run(context_.kernels.look_up, arguments, bin.hit_something.without(bin.shadow));
+  const bool is_for_lights = slot == TextureSlot::emission;
+  context_.machine.run(context_.kernels.look_up, arguments,
+                       is_for_lights ? bin.hit_something : bin.hit_something.without(bin.shadow));
   const cn::PolySpan look_up = arguments.look_up.span();
   context_.loads.copy_m2p(step, block, {look_up.offset_bytes + look_up.size_bytes, footprint_bytes(slot)},
                           context_.machine.places_in(arguments.look_up.field(&TextureLookUp::place)), needs);
@@ -135,6 +150,8 @@ void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block
   arguments.surface = from.surface;
   arguments.lighting = from.lighting;
   arguments.is_in_layers = context_.layout.layers.any;
+  arguments.sizes = context_.layout.sizes;
+  arguments.look_ups = from.look_ups;
   arguments.direct_light = to.direct_light;
   context_.machine.run(context_.kernels.illuminate, arguments, bin_block(block).shadow);
 }

@@ -352,7 +352,7 @@ void put_textures(MonoImage& image, const TextureImages& textures, std::size_t t
   const cn::MonoAddress first = image.layout.textures.address;
   textures.write(image.bytes.data() + first);
   for (int slot = 0; slot < path_tracer::kTextureSlots; ++slot)
-    for (std::size_t i = 0; slots.uses[slot] && i < triangles; ++i)
+    for (std::size_t i = 0; slots.looks_up(path_tracer::TextureSlot(slot)) && i < triangles; ++i)
       put_tail(image, i, image.layout.sizes.texture[slot],
                textures.record_of(i, path_tracer::TextureSlot(slot), first));
 }

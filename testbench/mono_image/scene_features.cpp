@@ -65,6 +65,10 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
     features.lobes.diffuse = true;
   for (std::size_t i = 0; i < is_used.size(); ++i)
     if (is_used[i]) add_textures(scene.materials[i], features.lobes, features.textures);
+  features.textures.roughness_with_metallic =
+      features.textures.has(path_tracer::TextureSlot::roughness) &&
+      features.textures.has(path_tracer::TextureSlot::metallic) &&
+      std::all_of(scene.materials.begin(), scene.materials.end(), shows_roughness_with_metallic);
   const MeanEmission emission(scene);
   features.lights = std::any_of(
       scene.triangles.begin(), scene.triangles.end(),

@@ -129,38 +129,69 @@ TexturedRange textured_range(const Scene& scene, double factor, const TextureRef
   return {factor * least / 255.0, factor * largest / 255.0};
 }
 
-TextureImages::TextureImages(const Scene& scene, const path_tracer::TextureSlots& slots) : scene_(scene) {
+bool shows_roughness_with_metallic(const Material& material) {
+  const TextureReference& a = material.textures.metallic;
+  const TextureReference& b = material.textures.roughness;
+  if (!a || !b) return true;
+  return a.texture == b.texture && a.coordinate_set == b.coordinate_set && a.wrap_u == b.wrap_u &&
+         a.wrap_v == b.wrap_v && a.filter == b.filter && a.transform.offset == b.transform.offset &&
+         a.transform.rotation_radians == b.transform.rotation_radians &&
+         a.transform.scale == b.transform.scale;
+}
+
+TextureImages::TextureImages(const Scene& scene, const path_tracer::TextureSlots& slots)
+    : scene_(scene), slots_(slots) {
   if (!slots.any()) return;
   std::vector<bool> is_used(scene.materials.size());
   for (const Triangle& triangle : scene.triangles) is_used[std::size_t(triangle.material)] = true;
   for (std::size_t i = 0; i < is_used.size(); ++i) {
     for (int index = 0; index < path_tracer::kTextureSlots; ++index) {
       const auto slot = TextureSlot(index);
-      const TextureReference& reference = shown_texture(scene.materials[i], slot);
-      if (!is_used[i] || !slots.has(slot) || !reference) continue;
+      const TextureReference& reference = reference_of(scene.materials[i], slot);
+      if (!is_used[i] || !slots.looks_up(slot) || !reference) continue;
       const Image& image = scene.textures[std::size_t(reference.texture)].image;
-      if (place_of_.emplace(use_of(reference, slot), bytes_).second)
+      if (place_of_.emplace(use_of(scene.materials[i], slot), bytes_).second)
         bytes_ += texels_of(image) * std::uint64_t(path_tracer::footprint_bytes(slot));
     }
   }
 }
 
-TextureImages::Use TextureImages::use_of(const TextureReference& reference, TextureSlot slot) {
-  return {reference.texture, path_tracer::is_colour(slot) ? kColour : reference.channel};
+const TextureReference& TextureImages::reference_of(const Material& material, TextureSlot slot) const {
+  const TextureReference& reference = shown_texture(material, slot);
+  const bool is_for_roughness = slot == TextureSlot::metallic && slots_.roughness_with_metallic;
+  return is_for_roughness && !reference ? shown_texture(material, TextureSlot::roughness) : reference;
+}
+
+TextureImages::Use TextureImages::use_of(const Material& material, TextureSlot slot) const {
+  const TextureReference& shown = shown_texture(material, slot);
+  Use use{reference_of(material, slot).texture};
+  if (path_tracer::is_colour(slot)) return use;
+  use.channel = shown ? shown.channel : kWhite;
+  if (slot == TextureSlot::metallic && slots_.roughness_with_metallic) {
+    const TextureReference& roughness = shown_texture(material, TextureSlot::roughness);
+    if (roughness) use.roughness = roughness.channel;
+  }
+  return use;
 }
 
 void TextureImages::write(std::uint8_t* to) const {
   for (const auto& [use, place] : place_of_) {
-    const Image& image = scene_.textures[std::size_t(use.first)].image;
-    const int channel = use.second;
-    if (channel == kColour) {
+    const Image& image = scene_.textures[std::size_t(use.texture)].image;
+    if (use.channel == kColour) {
       write_footprints(image, to + place, [&](int x, int y) {
         return ColourFootprint{footprint(image, x, y, 0), footprint(image, x, y, 1),
                                footprint(image, x, y, 2)};
       });
     } else {
-      write_footprints(image, to + place,
-                       [&](int x, int y) { return ChannelFootprint{footprint(image, x, y, channel)}; });
+      constexpr TexelFootprint kAllWhite = 0xffffffff;
+      const auto of_channel = [&](int x, int y, int channel) {
+        return channel == kWhite ? kAllWhite : footprint(image, x, y, channel);
+      };
+      const int channel = use.channel;
+      const int roughness = use.roughness;
+      write_footprints(image, to + place, [&](int x, int y) {
+        return ChannelFootprint{of_channel(x, y, channel), of_channel(x, y, roughness)};
+      });
     }
   }
 }
@@ -168,7 +199,8 @@ void TextureImages::write(std::uint8_t* to) const {
 TextureRecord TextureImages::record_of(std::size_t triangle, TextureSlot slot, cn::MonoAddress first) const {
   TextureRecord record;
   const Triangle& of = scene_.triangles[triangle];
-  const TextureReference& reference = shown_texture(scene_.materials[std::size_t(of.material)], slot);
+  const Material& material = scene_.materials[std::size_t(of.material)];
+  const TextureReference& reference = reference_of(material, slot);
   if (!reference) return record;
   const Texture& texture = scene_.textures[std::size_t(reference.texture)];
   if (texture.encoding != (path_tracer::is_colour(slot) ? TexelEncoding::srgb : TexelEncoding::linear))
@@ -188,7 +220,7 @@ TextureRecord TextureImages::record_of(std::size_t triangle, TextureSlot slot, c
   record.x_along = column.along;
   record.y_at_origin = row.at_origin;
   record.y_along = row.along;
-  record.footprints = first + place_of_.at(use_of(reference, slot));
+  record.footprints = first + place_of_.at(use_of(material, slot));
   record.width = texture.image.width;
   record.height = texture.image.height;
   record.wrap_x = to_record(reference.wrap_u);

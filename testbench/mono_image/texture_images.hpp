@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <map>
-#include <utility>
+#include <tuple>
 
 #include "firmware/path_tracer/program/layout.hpp"
 #include "testbench/scene/scene.hpp"
@@ -11,6 +11,10 @@ namespace testbench {
 
 /// The texture that the firmware shows in a slot of a material; an empty reference if there is none.
 const TextureReference& shown_texture(const Material& material, path_tracer::TextureSlot slot);
+
+/// Whether roughness can be looked up together with metallic: no material has textures of both that differ in
+/// more than the channel.
+bool shows_roughness_with_metallic(const Material& material);
 
 /// The least and the largest value of a material's field over its texture.
 struct TexturedRange {
@@ -36,11 +40,23 @@ class TextureImages {
 
  private:
   static constexpr int kColour = -1;
-  /// Index of a texture, and its channel or kColour.
-  using Use = std::pair<std::int32_t, int>;
-  static Use use_of(const TextureReference& reference, path_tracer::TextureSlot slot);
+  static constexpr int kWhite = -2;
+  /// What an array of footprints shows.
+  struct Use {
+    std::int32_t texture = kNoTexture;
+    int channel = kColour;   ///< or kWhite
+    int roughness = kWhite;  ///< channel of roughness, where it is looked up with metallic
+
+    bool operator<(const Use& other) const {
+      return std::tie(texture, channel, roughness) < std::tie(other.texture, other.channel, other.roughness);
+    }
+  };
+  /// The reference that a slot's look-up follows; an empty one if there is none.
+  const TextureReference& reference_of(const Material& material, path_tracer::TextureSlot slot) const;
+  Use use_of(const Material& material, path_tracer::TextureSlot slot) const;
 
   const Scene& scene_;
+  path_tracer::TextureSlots slots_;
   std::map<Use, std::uint64_t> place_of_;  ///< in bytes from the first texture
   std::uint64_t bytes_ = 0;
 };

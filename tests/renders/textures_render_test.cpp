@@ -227,6 +227,31 @@ TEST_F(TexturedRenders, WhiteTexturesOfSingleChannelsChangeNoBit) {
             testbench::render_natively(bare, options).film.sha256());
 }
 
+/// One image for both, as in glTF, is looked up once. A copy of the image for one of them shows the same.
+TEST_F(TexturedRenders, MetallicAndRoughnessOfOneImageShareALookUp) {
+  Scene scene = test_support::textured_squares({16, 12});
+  for (std::size_t i = 1; i < 7; ++i) {
+    testbench::MaterialTextures& textures = scene.materials[i].textures;
+    textures.roughness.texture = 2;
+    textures.roughness.channel = 1;
+    if (i == 3) textures.metallic = {};
+    if (i == 4) textures.roughness = {};
+  }
+  Scene apart = scene;
+  apart.textures.push_back(apart.textures[2]);
+  for (std::size_t i = 1; i < 7; ++i)
+    if (i != 4) apart.materials[i].textures.roughness.texture = 4;
+  const RenderOptions options = options_for(Program::full, Traversal::refill, 1);
+  const path_tracer::Features together = testbench::features_of(scene, options.program);
+  const path_tracer::Features two = testbench::features_of(apart, options.program);
+  EXPECT_TRUE(together.textures.roughness_with_metallic);
+  EXPECT_FALSE(two.textures.roughness_with_metallic);
+  EXPECT_EQ(path_tracer::RecordSizes(two).surface - path_tracer::RecordSizes(together).surface,
+            int{sizeof(path_tracer::TextureRecord)});
+  EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(),
+            testbench::render_natively(apart, options).film.sha256());
+}
+
 /// Lobes are those that texels make: a scene without smooth texels has no mirror, and so on.
 TEST_F(TexturedRenders, AreBuiltForTheTexelsOfTheirTextures) {
   Scene scene = test_support::textured_square({2, 2}, TextureFilter::linear);

@@ -34,12 +34,14 @@ inline void apply_textures(const ShadeArguments& arguments, Material& material) 
   const TexturesAtHit textures(arguments.surface, arguments.sizes, arguments.look_ups);
   const TextureSlots& slots = arguments.features.textures;
   const auto multiply = [&](TextureSlot slot, poly<double>& field) {
-    if (slots.has(slot)) field.assign_all_lanes(field * textures.channel(slot));
+    if (slots.looks_up(slot)) field.assign_all_lanes(field * textures.channel(slot));
   };
   if (slots.has(TextureSlot::reflectance))
     bsdf_detail::assign(material.base_color, material.base_color * textures.colour(TextureSlot::reflectance));
   multiply(TextureSlot::metallic, material.metallic);
   multiply(TextureSlot::roughness, material.roughness);
+  if (slots.roughness_with_metallic)
+    material.roughness.assign_all_lanes(material.roughness * textures.roughness_with_metallic());
   multiply(TextureSlot::transmission, material.transmission);
 }
 

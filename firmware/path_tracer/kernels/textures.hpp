@@ -117,12 +117,10 @@ class TexturesAtHit {
       : surface_(surface), sizes_(sizes), look_ups_(look_ups) {}
 
   /// The factor of a slot with one channel; 1 where the triangle has no such texture.
-  poly<double> channel(TextureSlot slot) const {
-    if (!sizes_.has_texture(slot)) return 1.0;
-    const auto footprint = tail<ChannelFootprint>(look_up_of(slot)).get(&ChannelFootprint::channel);
-    const auto keep_code = [](const poly<double>& code) { return code; };
-    const poly<double> value = texture_detail::filter(footprint, shares(slot), keep_code) * (1.0 / 255.0);
-    return cn::select(has_texture(slot), value, poly<double>(1.0));
+  poly<double> channel(TextureSlot slot) const { return channel(slot, &ChannelFootprint::channel); }
+  /// The factor of roughness where it is looked up with metallic.
+  poly<double> roughness_with_metallic() const {
+    return channel(TextureSlot::metallic, &ChannelFootprint::roughness);
   }
 
   /// The factor of a slot that is_colour().
@@ -140,6 +138,13 @@ class TexturesAtHit {
   }
 
  private:
+  poly<double> channel(TextureSlot slot, TexelFootprint ChannelFootprint::*part) const {
+    if (!sizes_.has_texture(slot)) return 1.0;
+    const auto footprint = tail<ChannelFootprint>(look_up_of(slot)).get(part);
+    const auto keep_code = [](const poly<double>& code) { return code; };
+    const poly<double> value = texture_detail::filter(footprint, shares(slot), keep_code) * (1.0 / 255.0);
+    return cn::select(has_texture(slot), value, poly<double>(1.0));
+  }
   PolyPointer<TextureLookUp> look_up_of(TextureSlot slot) const {
     return tail<TextureLookUp>(look_ups_, sizes_.look_up[int(slot)]);
   }

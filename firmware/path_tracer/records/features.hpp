@@ -43,8 +43,15 @@ constexpr bool is_colour(TextureSlot slot) {
 /// The slots that materials of a scene have textures for.
 struct TextureSlots {
   bool uses[kTextureSlots] = {};
+  /// Wherever a triangle has textures of both, they are one image, as in glTF. Then roughness is looked up
+  /// together with metallic.
+  bool roughness_with_metallic = false;
 
   constexpr bool has(TextureSlot slot) const { return uses[int(slot)]; }
+  /// Whether the slot has a look-up of its own.
+  constexpr bool looks_up(TextureSlot slot) const {
+    return has(slot) && !(slot == TextureSlot::roughness && roughness_with_metallic);
+  }
   constexpr bool any() const {
     bool any_slot = false;
     for (const bool uses_slot : uses) any_slot = any_slot || uses_slot;

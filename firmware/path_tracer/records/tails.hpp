@@ -75,7 +75,7 @@ using TexelFootprint = std::uint32_t;
 /// of 8 bytes.
 struct ChannelFootprint {
   TexelFootprint channel = 0;
-  std::uint32_t unused = 0;
+  TexelFootprint roughness = 0;  ///< of metallic's slot, if TextureSlots::roughness_with_metallic
 };
 struct ColourFootprint {
   TexelFootprint red = 0;
@@ -149,10 +149,10 @@ struct RecordSizes {
     sheen = append(features.lobes.sheen, sizeof(SheenRecord));
     normal = append(features.normals, sizeof(NormalRecord));
     for (int slot = 0; slot < kTextureSlots; ++slot) {
-      texture[slot] = append(features.textures.uses[slot], sizeof(TextureRecord));
+      const bool looks_up = features.textures.looks_up(TextureSlot(slot));
+      texture[slot] = append(looks_up, sizeof(TextureRecord));
       look_up[slot] = look_ups;
-      if (features.textures.uses[slot])
-        look_ups += int{sizeof(TextureLookUp)} + footprint_bytes(TextureSlot(slot));
+      if (looks_up) look_ups += int{sizeof(TextureLookUp)} + footprint_bytes(TextureSlot(slot));
     }
     aim = append(features.multiple_importance, sizeof(AimRecord));
   }

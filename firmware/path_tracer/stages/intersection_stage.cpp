@@ -73,7 +73,8 @@ void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
 void IntersectionStage::prepare(std::uint64_t step, int block) {
   context_.loads.wait(step);
   for (int slot = 0; slot < kTextureSlots; ++slot)
-    if (context_.config.features.textures.uses[slot]) load_texels(step, block, TextureSlot(slot));
+    if (context_.config.features.textures.looks_up(TextureSlot(slot)))
+      load_texels(step, block, TextureSlot(slot));
 }
 
 void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot slot) {

@@ -5,7 +5,6 @@
 #include "tests/support/checked_firmware.hpp"
 #include "tests/support/hazards.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/textured_scenes.hpp"
 
 namespace hazard_mutation_test {
 

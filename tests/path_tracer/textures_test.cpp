@@ -9,8 +9,8 @@
 
 #include "testbench/mono_image/mono_image.hpp"
 #include "testbench/texture/sample.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/strip_fixture.hpp"
-#include "tests/support/textured_scenes.hpp"
 
 namespace textures_test {
 

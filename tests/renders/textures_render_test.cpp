@@ -6,8 +6,8 @@
 #include "testbench/run/render.hpp"
 #include "testbench/texture/sample.hpp"
 #include "tests/support/native_paths.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
-#include "tests/support/textured_scenes.hpp"
 
 namespace textures_render_test {
 

@@ -62,7 +62,7 @@ void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
   const int bytes = context_.layout.sizes.surface;
   const Bins::Block& bin = bin_block(block);
   const cn::MonoPlaces places = context_.machine.places_in(bin.surface_place);
-  const bool spares_tails = context_.config.casts_shadow_rays() && bytes > to.surface.size_bytes() &&
+  const bool spares_tails = context_.config.casts_shadow_rays() && bytes > int{sizeof(SurfaceRecord)} &&
                             !context_.config.features.textures.has(TextureSlot::emission);
   const LaneMask with_tails = spares_tails ? bin.hit_something.without(bin.shadow) : bin.hit_something;
   context_.loads.copy_m2p(step, block, with_tail(to.surface, bytes), places, with_tails);

@@ -14,8 +14,8 @@ struct SceneCounts {
   int triangles = 0;
   int lights = 0;
   int tree_slots = 0;  ///< nodes; 0 without a tree
-  std::uint64_t texture_bytes = 0;
   bool has_layers = false;
+  std::uint64_t texture_bytes = 0;
 };
 
 /// Addresses in mono memory.

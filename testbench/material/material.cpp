@@ -23,6 +23,10 @@ void drop_idle_textures(Material& material) {
   drop_unless(material.alpha > 0.0, textures.alpha);
 }
 
+bool shows_transmission_colour(const Material& material) {
+  return material.transmission == 1.0 && !material.textures.transmission && material.metallic == 0.0;
+}
+
 bool is_plain(const Material& material) {
   const bool has_lobe = material.metallic > 0.0 || material.specular > 0.0 || material.transmission > 0.0 ||
                         material.clearcoat > 0.0 || material.sheen_colour != glm::dvec3(0.0);

@@ -86,6 +86,10 @@ bool has_texture(const Material& material);
 /// Drops textures whose factor is 0, which show nothing.
 void drop_idle_textures(Material& material);
 
+/// Whether transmission_colour takes the place of reflectance: what a fully transmissive surface does not
+/// reflect passes, and nothing is diffuse there.
+bool shows_transmission_colour(const Material& material);
+
 /// Whether the material only reflects diffusely and emits, the same all over.
 bool is_plain(const Material& material);
 

@@ -10,9 +10,12 @@
 
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
+#include "testbench/mono_image/barycentric.hpp"
 #include "testbench/mono_image/faces.hpp"
+#include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
+#include "testbench/mono_image/texture_images.hpp"
 #include "testbench/scene/film_ray.hpp"
 #include "testbench/scene/normalise.hpp"
 #include "testbench/system/error.hpp"
@@ -74,9 +77,8 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
                              std::int32_t light) {
   SurfaceRecord record;
   record.normal = to_record(glm::normalize(area_normal(triangle)));
-  // What is not reflected by a fully transmissive surface passes; nothing is diffuse there.
-  const bool is_clear = material.transmission == 1.0 && material.metallic == 0.0;
-  record.reflectance = to_record(is_clear ? material.transmission_colour : material.reflectance);
+  record.reflectance =
+      to_record(shows_transmission_colour(material) ? material.transmission_colour : material.reflectance);
   record.emission = to_record(material.emission);
   record.face = face;
   record.light = light;
@@ -95,6 +97,7 @@ struct Emitter {
   glm::dvec3 edge1;
   glm::dvec3 edge2;
   LightShape shape;
+  glm::dvec3 emission;  ///< mean radiance, estimated
   std::int32_t material;
   std::int32_t face;
   std::vector<std::size_t> triangles;
@@ -106,8 +109,8 @@ double area(const Emitter& emitter) {
 }
 
 /// The radiant power of a light, up to a common factor. Lights are chosen in proportion to it.
-double power(const Emitter& emitter, const Scene& scene) {
-  const glm::dvec3& emission = scene.materials[std::size_t(emitter.material)].emission;
+double power(const Emitter& emitter) {
+  const glm::dvec3& emission = emitter.emission;
   return area(emitter) * (emission.x + emission.y + emission.z);
 }
 
@@ -121,6 +124,7 @@ std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
   for (int i = 0; i < 3; ++i) {
     // The right angle lies at a corner of `a`, the opposite corner is one of `b`.
     Emitter joined = a;
+    joined.emission = 0.5 * (a.emission + b.emission);
     joined.vertex = corners_a[i];
     joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
     joined.edge2 = corners_a[(i + 2) % 3] - joined.vertex;
@@ -142,6 +146,7 @@ std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
 }
 
 std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::int32_t>& faces) {
+  const MeanEmission emission(scene);
   std::vector<Emitter> emitters;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     const Triangle& triangle = scene.triangles[i];
@@ -149,10 +154,11 @@ std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::in
                           triangle.vertex[1] - triangle.vertex[0],
                           triangle.vertex[2] - triangle.vertex[0],
                           LightShape::triangle,
+                          emission.of_triangle(i),
                           triangle.material,
                           faces[i],
                           {i}};
-    if (power(emitter, scene) > 0) emitters.push_back(emitter);
+    if (power(emitter) > 0) emitters.push_back(emitter);
   }
   return emitters;
 }
@@ -174,7 +180,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
   std::vector<Emitter> emitters = find_emitters(scene, faces);
   if (sampling == path_tracer::LightSampling::solid_angle) emitters = join_rectangles(emitters);
   double total_power = 0;
-  for (const Emitter& emitter : emitters) total_power += power(emitter, scene);
+  for (const Emitter& emitter : emitters) total_power += power(emitter);
   if (!(total_power > 0) && scene.environment.is_lit()) return {};
   if (!(total_power > 0))
     throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
@@ -182,7 +188,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
   Lights lights;
   double power_so_far = 0;
   for (const Emitter& emitter : emitters) {
-    const double pdf = power(emitter, scene) / total_power / area(emitter);
+    const double pdf = power(emitter) / total_power / area(emitter);
     LightRecord record;
     record.vertex = to_record(emitter.vertex);
     record.edge1 = to_record(emitter.edge1);
@@ -193,7 +199,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
     record.shape = static_cast<std::int32_t>(emitter.shape);
     lights.records.push_back(record);
     lights.triangles.push_back(emitter.triangles);
-    power_so_far += power(emitter, scene);
+    power_so_far += power(emitter);
     lights.cdf.push_back(power_so_far / total_power);
   }
   return lights;
@@ -312,19 +318,13 @@ path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
   const CornerNormals& corners = scene.corners.normals[index];
   path_tracer::NormalRecord record;
   const bool is_flat = corners[0] == glm::dvec3(0.0);
-  const glm::dvec3 plane = area_normal(triangle);
   if (is_flat) {
-    record.at_origin = to_record(glm::normalize(plane));
+    record.at_origin = to_record(glm::normalize(area_normal(triangle)));
     return record;
   }
-  // Barycentric coordinates are u = to_u . (p - vertex) and v = to_v . (p - vertex).
-  const glm::dvec3 edge1 = triangle.vertex[1] - triangle.vertex[0];
-  const glm::dvec3 edge2 = triangle.vertex[2] - triangle.vertex[0];
-  const double area_squared = glm::dot(plane, plane);
-  const glm::dvec3 to_u = glm::cross(edge2, plane) / area_squared;
-  const glm::dvec3 to_v = glm::cross(plane, edge1) / area_squared;
-  const glm::dmat3 slope =
-      glm::outerProduct(corners[1] - corners[0], to_u) + glm::outerProduct(corners[2] - corners[0], to_v);
+  const Barycentric barycentric(triangle);
+  const glm::dmat3 slope = glm::outerProduct(corners[1] - corners[0], barycentric.to_u) +
+                           glm::outerProduct(corners[2] - corners[0], barycentric.to_v);
   record.at_origin = to_record(corners[0] - slope * triangle.vertex[0]);
   record.along_x = to_record(slope[0]);
   record.along_y = to_record(slope[1]);
@@ -344,6 +344,17 @@ void put_material(MonoImage& image, std::size_t triangle, const Material& materi
            path_tracer::CoatRecord{material.clearcoat, material.clearcoat_roughness});
   put_tail(image, triangle, sizes.sheen,
            path_tracer::SheenRecord{to_record(material.sheen_colour), material.sheen_roughness});
+}
+
+void put_textures(MonoImage& image, const TextureImages& textures, std::size_t triangles) {
+  const path_tracer::TextureSlots& slots = image.layout.features.textures;
+  if (!slots.any()) return;
+  const cn::MonoAddress first = image.layout.textures.address;
+  textures.write(image.bytes.data() + first);
+  for (int slot = 0; slot < path_tracer::kTextureSlots; ++slot)
+    for (std::size_t i = 0; slots.looks_up(path_tracer::TextureSlot(slot)) && i < triangles; ++i)
+      put_tail(image, i, image.layout.sizes.texture[slot],
+               textures.record_of(i, path_tracer::TextureSlot(slot), first));
 }
 
 void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& lights) {
@@ -378,10 +389,13 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   TreeImage tree;
   if (config.uses_tree()) tree = make_tree(triangles, reach, config);
 
+  const TextureImages textures(scene, config.features.textures);
+
   path_tracer::SceneCounts counts;
   counts.triangles = static_cast<int>(scene.triangles.size());
   counts.lights = static_cast<int>(lights.records.size());
   counts.tree_slots = static_cast<int>(tree.slots);
+  counts.texture_bytes = textures.bytes();
   counts.has_layers = triangles.layers.layers().any;
   MonoImage image;
   image.layout = path_tracer::make_layout(counts, num_pes, config);
@@ -396,6 +410,7 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
     put_triangle(image, triangles, order[place], place);
   if (config.uses_tree()) put_light_runs(image, triangles, lights);
   put_surfaces(image, triangles, lights);
+  put_textures(image, textures, triangles.count());
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
   if (config.uses_tree())

@@ -16,7 +16,7 @@ struct MonoImage {
 
 /// Lays out a scene for the firmware, lengths in the scene's unit. Throws InputError for a scene without
 /// light.
-MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config);
+MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options);
 
 /// The same with lengths in the scene's normal unit (testbench/scene/normalise.hpp), so that scenes of any
 /// size are rendered alike. Every render uses this one.

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "firmware/path_tracer/materials/material.hpp"
+#include "testbench/mono_image/mean_emission.hpp"
+#include "testbench/mono_image/texture_images.hpp"
 
 namespace testbench {
 namespace {
@@ -12,20 +14,42 @@ bool is_smooth(double roughness) {
   return roughness * roughness < path_tracer::kSmoothAlpha;
 }
 
-/// Adds the lobes that a material has.
-void add_lobes(const Material& material, path_tracer::Lobes& lobes) {
-  const double dielectric = 1.0 - material.metallic;
-  const double opaque = dielectric * (1.0 - material.transmission);
-  const bool smooth = is_smooth(material.roughness);
+/// Adds the lobes that a material has at any of its texels.
+void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes& lobes) {
+  const MaterialTextures& textures = material.textures;
+  const TexturedRange metallic = textured_range(scene, material.metallic, textures.metallic);
+  const TexturedRange roughness = textured_range(scene, material.roughness, textures.roughness);
+  const TexturedRange transmission = textured_range(scene, material.transmission, textures.transmission);
+  const double dielectric = 1.0 - metallic.low;
+  const double opaque = dielectric * (1.0 - transmission.low);
+  const bool has_smooth = is_smooth(roughness.low);
+  const bool has_rough = !is_smooth(roughness.high);
   if (opaque > 0) lobes.diffuse = true;
-  if (material.metallic > 0 || opaque * material.specular > 0) (smooth ? lobes.mirror : lobes.glossy) = true;
-  if (dielectric * material.transmission > 0) {
-    (smooth ? lobes.glass : lobes.rough_glass) = true;
+  if (metallic.high > 0 || opaque * material.specular > 0) {
+    lobes.mirror = lobes.mirror || has_smooth;
+    lobes.glossy = lobes.glossy || has_rough;
+  }
+  if (dielectric * transmission.high > 0) {
+    lobes.glass = lobes.glass || has_smooth;
+    lobes.rough_glass = lobes.rough_glass || has_rough;
     if (material.is_thin) lobes.thin_glass = true;
     if (!material.is_thin && std::isfinite(material.attenuation_distance)) lobes.absorption = true;
   }
   if (material.clearcoat > 0) lobes.coat = true;
   if (material.sheen_colour != glm::dvec3(0.0)) lobes.sheen = true;
+}
+
+/// Adds the slots that a material has a texture for, as far as the lobes of the scene read them.
+void add_textures(const Material& material, const path_tracer::Lobes& lobes,
+                  path_tracer::TextureSlots& slots) {
+  const auto add = [&](path_tracer::TextureSlot slot, bool is_read) {
+    if (is_read && shown_texture(material, slot)) slots.uses[int(slot)] = true;
+  };
+  add(path_tracer::TextureSlot::reflectance, true);
+  add(path_tracer::TextureSlot::emission, true);
+  add(path_tracer::TextureSlot::metallic, lobes.specular());
+  add(path_tracer::TextureSlot::roughness, lobes.specular());
+  add(path_tracer::TextureSlot::transmission, lobes.transmissive());
 }
 
 }  // namespace
@@ -36,13 +60,19 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
   path_tracer::Features features;
   features.lobes = {};
   for (std::size_t i = 0; i < is_used.size(); ++i)
-    if (is_used[i]) add_lobes(scene.materials[i], features.lobes);
+    if (is_used[i]) add_lobes(scene, scene.materials[i], features.lobes);
   if (!features.lobes.specular() && !features.lobes.coat && !features.lobes.sheen)
     features.lobes.diffuse = true;
-  features.lights =
-      std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
-        return scene.materials[std::size_t(triangle.material)].emission != glm::dvec3(0.0);
-      });
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) add_textures(scene.materials[i], features.lobes, features.textures);
+  features.textures.roughness_with_metallic =
+      features.textures.has(path_tracer::TextureSlot::roughness) &&
+      features.textures.has(path_tracer::TextureSlot::metallic) &&
+      std::all_of(scene.materials.begin(), scene.materials.end(), shows_roughness_with_metallic);
+  const MeanEmission emission(scene);
+  features.lights = std::any_of(
+      scene.triangles.begin(), scene.triangles.end(),
+      [&](const Triangle& triangle) { return emission.of_material(triangle.material) != glm::dvec3(0.0); });
   features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();

@@ -12,7 +12,8 @@ struct NotShown {
 
 /// What materials have and the firmware does not render.
 constexpr NotShown kNotShown[] = {
-    {"a texture of a material is left out, its factor alone counts", has_texture},
+    {"a texture of a material's normal or alpha is left out",
+     [](const Material& material) { return material.textures.normal || material.textures.alpha; }},
     {"a material of partial coverage (alpha) is shown as opaque",
      [](const Material& material) {
        return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0;
@@ -24,8 +25,7 @@ constexpr NotShown kNotShown[] = {
      }},
     {"a colour of transmission is left out, what passes has the base colour",
      [](const Material& material) {
-       const bool is_clear = material.transmission == 1.0 && material.metallic == 0.0;
-       return material.transmission > 0.0 && !is_clear &&
+       return material.transmission > 0.0 && !shows_transmission_colour(material) &&
               material.transmission_colour != material.reflectance;
      }},
 };

@@ -90,6 +90,19 @@ TEST(SoundFirmware, RunsCleanThroughEveryShapeOfTreeAndBins) {
           }
 }
 
+TEST(SoundFirmware, RunsCleanWithTexturesAtEveryLevelOfBuffering) {
+  for (const Program program : kPrograms)
+    for (const Traversal traversal :
+         {Traversal::brute_force, Traversal::temporary_bin, Traversal::refill, Traversal::lock_step})
+      for (int n = 0; n <= 8; ++n)
+        for (const bool loads : {false, true}) {
+          ProgramConfig config = checked_program(program, traversal, n, std::max(1, n));
+          config.buffer_loads = loads;
+          for (const bool has_textured_light : {false, true})
+            expect_clean(test_support::textured_squares({9, 7}, has_textured_light), config, 8);
+        }
+}
+
 /// Every single wait of a run, one after the other.
 void expect_every_wait_is_needed(const testbench::Scene& scene, const ProgramConfig& config) {
   const CheckedRun sound = run_checked(scene, config, 8, 1);
@@ -115,6 +128,11 @@ TEST(BrokenFirmware, IsStoppedWhicheverWaitIsLeftOut) {
       if (testing::Test::HasFailure()) return;
     }
   }
+}
+
+TEST(BrokenFirmware, IsStoppedWhicheverWaitForTexelsIsLeftOut) {
+  for (const int n : {0, 1, 3})
+    expect_every_wait_is_needed(test_support::textured_squares({6, 4}), checked_program(Program::full, n));
 }
 
 TEST(BrokenFirmware, IsStoppedWhicheverWaitOnTheWayThroughATreeIsLeftOut) {

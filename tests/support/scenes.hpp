@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "testbench/scene/scene.hpp"
@@ -48,5 +49,20 @@ Scene triangle_soup(int triangles, std::uint64_t seed, FilmSize film);
 
 /// scenes/cornell_box with a smaller film.
 Scene small_cornell_box(FilmSize film);
+
+/// A texture of random texels.
+testbench::Texture random_texture(int width, int height, int channels, testbench::TexelEncoding encoding);
+
+/// Adds two triangles with texture coordinates in set 0, counter-clockwise as seen from the front; (0, 0) is
+/// at the last corner.
+void add_textured_square(testbench::Scene& scene, const std::array<glm::dvec3, 4>& corners,
+                         std::int32_t material);
+
+/// A square whose reflectance is a texture with a texel for each pixel of the film, which it fills, under a
+/// sky of radiance 1.
+testbench::Scene textured_square(testbench::FilmSize film, testbench::TextureFilter filter);
+
+/// Leaning squares with textures in every slot, wrapped and filtered in every way, under a sky and a light.
+testbench::Scene textured_squares(testbench::FilmSize film, bool has_textured_light = false);
 
 }  // namespace test_support

@@ -5,6 +5,7 @@
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/shade.hpp"
+#include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/prefilter/prefilter_search.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
@@ -111,8 +112,8 @@ mask is_light(const IlluminateArguments& arguments) {
 
 void illuminate(const IlluminateArguments& arguments) {
   const mask sees = (arguments.hit.get(&HitRecord::hit) != 0) & is_light(arguments);
-  const vec3<poly<double>> light =
-      arguments.surface.get(&SurfaceRecord::emission) * arguments.lighting.get(&LightingRecord::weight);
+  const vec3<poly<double>> light = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups) *
+                                   arguments.lighting.get(&LightingRecord::weight);
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
   arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
 }
@@ -278,6 +279,7 @@ const Kernels& PATH_TRACER_KERNELS() {
   static constexpr Kernels table{
       cn::kernel<IntersectArguments, intersect>("intersect"),
       cn::kernel<ScatterArguments, scatter>("scatter"),
+      cn::kernel<LookUpArguments, look_up>("look_up"),
       cn::kernel<ShadeArguments, shade>("shade"),
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),

@@ -51,12 +51,22 @@ struct ScatterArguments {
   LaneMask* casts = nullptr;  ///< the slot's next ray is the shadow ray
 };
 
+/// Intersection stage, after the first loads: the texels that a texture shows at the hit.
+struct LookUpArguments {
+  PolyPointer<HitRecord> hit;
+  PolyPointer<TextureRecord> texture;
+  int footprint_bytes = 0;
+  PolyPointer<TextureLookUp> look_up;
+  LaneMask* needs = nullptr;  ///< PEs whose triangle has the texture
+};
+
 /// ScatterArguments for scenes that are not plain (records/features.hpp).
 struct ShadeArguments : ScatterArguments {
   Features features;
   RecordSizes sizes{Features{}};
   Estimator estimator = Estimator::per_lobe;
   vec3<double> environment{};  ///< radiance from outside
+  PolyPointer<TextureLookUp> look_ups;
 };
 
 /// Intersection stage, shadow rays: direct light if the ray hit its light.
@@ -65,6 +75,8 @@ struct IlluminateArguments {
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<LightingRecord> lighting;
   bool is_in_layers = false;
+  RecordSizes sizes{Features{}};
+  PolyPointer<TextureLookUp> look_ups;
   PolyPointer<DirectLightRecord> direct_light;
 };
 
@@ -163,6 +175,7 @@ struct PacketKernels;
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
   cn::Kernel<ScatterArguments> scatter;
+  cn::Kernel<LookUpArguments> look_up;
   cn::Kernel<ShadeArguments> shade;
   cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;

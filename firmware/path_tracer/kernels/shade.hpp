@@ -4,6 +4,7 @@
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
+#include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "firmware/path_tracer/materials/sample_bsdf.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
@@ -27,6 +28,22 @@ struct ShadedVertex {
   /// Where hits and shadow rays share the light. Elsewhere it comes by shadow rays alone.
   mask shares_light;
 };
+
+/// Multiplies a material by what its textures show at the hit.
+inline void apply_textures(const ShadeArguments& arguments, Material& material) {
+  const TexturesAtHit textures(arguments.surface, arguments.sizes, arguments.look_ups);
+  const TextureSlots& slots = arguments.features.textures;
+  const auto multiply = [&](TextureSlot slot, poly<double>& field) {
+    if (slots.looks_up(slot)) field.assign_all_lanes(field * textures.channel(slot));
+  };
+  if (slots.has(TextureSlot::reflectance))
+    bsdf_detail::assign(material.base_color, material.base_color * textures.colour(TextureSlot::reflectance));
+  multiply(TextureSlot::metallic, material.metallic);
+  multiply(TextureSlot::roughness, material.roughness);
+  if (slots.roughness_with_metallic)
+    material.roughness.assign_all_lanes(material.roughness * textures.roughness_with_metallic());
+  multiply(TextureSlot::transmission, material.transmission);
+}
 
 /// The BSDF's parameters at the hit, seen from the side that the segment arrived from.
 inline Material read_material(const ShadeArguments& arguments, const mask& front) {
@@ -59,6 +76,7 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
     bsdf_detail::assign(material.sheen_color, record.get(&SheenRecord::colour));
     material.sheen_roughness.assign_all_lanes(record.get(&SheenRecord::roughness));
   }
+  if (arguments.features.textures.any()) apply_textures(arguments, material);
   return material;
 }
 
@@ -244,7 +262,8 @@ inline void shade(const ShadeArguments& arguments) {
   const Direction3 normal = cn::select(front, surface_normal, surface_normal * -1.0);
   const Rgb arrived = absorb(arguments, front);
 
-  const Rgb emission = arguments.surface.get(&SurfaceRecord::emission) * weight_of_hit(arguments, normal);
+  const Rgb emission = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups) *
+                       weight_of_hit(arguments, normal);
   const Rgb none{0.0, 0.0, 0.0};
   const Rgb outside = arguments.features.environment
                           ? Rgb{arguments.environment.x, arguments.environment.y, arguments.environment.z}

@@ -13,9 +13,10 @@ bool StepPipeline::can_load(const Step& step) const {
   });
 }
 
-/// A stage with a second load phase begins so early that the second loads, too, begin n steps ahead.
+/// A stage whose first loads have buffers of their own begins so early that the second loads, too, begin n
+/// steps ahead.
 std::size_t StepPipeline::look_ahead(const Step& step) const {
-  return static_cast<std::size_t>(step.stage->prepares() ? 2 * buffers_.steps - 1 : buffers_.steps);
+  return static_cast<std::size_t>(step.stage->loads_early() ? 2 * buffers_.steps - 1 : buffers_.steps);
 }
 
 void StepPipeline::load_ahead() {

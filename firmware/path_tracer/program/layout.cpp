@@ -84,6 +84,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   if (config.uses_tree())
     layout.nodes = memory.take<std::uint64_t>(
         "nodes", std::uint64_t(scene.tree_slots) * std::uint64_t(tree.layout.node_bytes()) / 8);
+  if (scene.texture_bytes > 0)
+    layout.textures = memory.take<std::uint64_t>("textures", (scene.texture_bytes + 7) / 8);
   layout.scene_bytes = memory.used_bytes();
   if (config.uses_tree()) {
     layout.ray_queue = memory.take<QueuedRay>("ray queue", slots);

@@ -15,6 +15,7 @@ struct SceneCounts {
   int lights = 0;
   int tree_slots = 0;  ///< nodes; 0 without a tree
   bool has_layers = false;
+  std::uint64_t texture_bytes = 0;
 };
 
 /// Addresses in mono memory.
@@ -26,6 +27,7 @@ struct Layout {
   cn::MonoPointer<LightRecord> lights;
   cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i
   cn::MonoPointer<std::uint64_t> nodes;
+  cn::MonoPointer<std::uint64_t> textures;  ///< footprints of texels (records/tails.hpp)
   int triangle_count =
       0;  ///< with a tree, in order of leaves; behind them lie kLightRun triangles for each light
   int light_count = 0;

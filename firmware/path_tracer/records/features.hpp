@@ -32,18 +32,46 @@ struct Lobes {
   constexpr bool evaluable() const { return cosine() || rough_specular() || coat || sheen; }
 };
 
+/// What textures of materials multiply; a scene's textures are looked up for each of these that a material
+/// uses. Colours have sRGB texels of three channels, the others have one linear channel.
+enum class TextureSlot { reflectance, emission, metallic, roughness, transmission };
+inline constexpr int kTextureSlots = 5;
+constexpr bool is_colour(TextureSlot slot) {
+  return slot == TextureSlot::reflectance || slot == TextureSlot::emission;
+}
+
+/// The slots that materials of a scene have textures for.
+struct TextureSlots {
+  bool uses[kTextureSlots] = {};
+  /// Wherever a triangle has textures of both, they are one image, as in glTF. Then roughness is looked up
+  /// together with metallic.
+  bool roughness_with_metallic = false;
+
+  constexpr bool has(TextureSlot slot) const { return uses[int(slot)]; }
+  /// Whether the slot has a look-up of its own.
+  constexpr bool looks_up(TextureSlot slot) const {
+    return has(slot) && !(slot == TextureSlot::roughness && roughness_with_metallic);
+  }
+  constexpr bool any() const {
+    bool any_slot = false;
+    for (const bool uses_slot : uses) any_slot = any_slot || uses_slot;
+    return any_slot;
+  }
+};
+
 struct Features {
   Lobes lobes{true};
   bool lights = true;        ///< triangles that emit, to aim shadow rays at
   bool environment = false;  ///< light that arrives from outside
   bool normals = false;      ///< that vary over triangles
+  TextureSlots textures;
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 
   /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
   /// alone.
   constexpr bool plain() const {
-    return lobes.only_diffuse() && !environment && !normals && !multiple_importance;
+    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !multiple_importance;
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/cn/chip/mono_memory.hpp"
 #include "firmware/path_tracer/records/features.hpp"
 #include "firmware/path_tracer/records/records.hpp"
 
@@ -44,6 +45,57 @@ struct NormalRecord {
   vec3<double> along_z{};
 };
 
+/// Values of TextureRecord::wrap_x and wrap_y: what stands beyond an image's edge (glTF 2.0,
+/// section 3.8.4.5).
+enum class TextureWrap : std::int32_t { repeat, mirrored_repeat, clamp_to_edge };
+
+/// Behind a SurfaceRecord, for each texture slot of the scene: the triangle's texture in that slot. The place
+/// in the image is an affine function of the position: x is x_at_origin + dot(x_along, position) texels to
+/// the right of the image's left edge, y as many below its upper edge.
+struct TextureRecord {
+  double x_at_origin = 0;
+  vec3<double> x_along{};
+  double y_at_origin = 0;
+  vec3<double> y_along{};
+  cn::MonoAddress footprints = 0;  ///< of the image's texels, row by row; 0: the triangle has no texture here
+  std::int32_t width = 1;          ///< in texels
+  std::int32_t height = 1;
+  std::int32_t wrap_x = 0;  ///< a TextureWrap
+  std::int32_t wrap_y = 0;
+  std::int32_t is_linear = 0;  ///< 1: bilinear filter, 0: the nearest texel
+  std::int32_t unused = 0;
+};
+
+/// A texel of one channel with its right, lower and diagonal neighbours, where the image repeats beyond its
+/// edges: all that a bilinear filter needs, so that a PE asks mono memory once and not four times. The
+/// texels' 8-bit codes are, from the lowest byte: upper left, upper right, lower left, lower right.
+using TexelFootprint = std::uint32_t;
+
+/// In mono memory: footprints of a texel of slots with one channel, and with three. A request moves multiples
+/// of 8 bytes.
+struct ChannelFootprint {
+  TexelFootprint channel = 0;
+  TexelFootprint roughness = 0;  ///< of metallic's slot, if TextureSlots::roughness_with_metallic
+};
+struct ColourFootprint {
+  TexelFootprint red = 0;
+  TexelFootprint green = 0;
+  TexelFootprint blue = 0;
+  std::uint32_t unused = 0;
+};
+
+constexpr int footprint_bytes(TextureSlot slot) {
+  return is_colour(slot) ? int{sizeof(ColourFootprint)} : int{sizeof(ChannelFootprint)};
+}
+
+/// In SRAM for each texture slot of the scene, from the choice of the texel to the filter; its footprint
+/// follows.
+struct TextureLookUp {
+  cn::MonoAddress place = 0;  ///< of the footprint
+  double right_share = 0;     ///< of the right texels, in [0, 1]
+  double lower_share = 0;
+};
+
 /// Behind a SurfaceRecord: how likely shadow rays find it.
 struct AimRecord {
   double inverse_pdf = 0;  ///< LightRecord::inverse_pdf of the triangle's light; infinity if it is none
@@ -63,6 +115,7 @@ struct RecordSizes {
 
   bool path_has_tail() const { return path > int{sizeof(PathRecord)}; }
   bool hit_has_tail() const { return hit > int{sizeof(HitRecord)}; }
+  bool has_texture(TextureSlot slot) const { return texture[int(slot)] != kNone; }
 
   static constexpr int kNone = 0;
   // In a SurfaceRecord; kNone if the scene has none of it.
@@ -71,7 +124,13 @@ struct RecordSizes {
   int coat = kNone;
   int sheen = kNone;
   int normal = kNone;
+  int texture[kTextureSlots] = {};
   int aim = kNone;
+
+  /// Look-ups of all texture slots of the scene, each a TextureLookUp and its footprint: bytes, and each
+  /// slot's place in them.
+  int look_ups = 0;
+  int look_up[kTextureSlots] = {};
 
   explicit RecordSizes(const Features& features) {
     if (features.plain()) return;
@@ -89,6 +148,12 @@ struct RecordSizes {
     coat = append(features.lobes.coat, sizeof(CoatRecord));
     sheen = append(features.lobes.sheen, sizeof(SheenRecord));
     normal = append(features.normals, sizeof(NormalRecord));
+    for (int slot = 0; slot < kTextureSlots; ++slot) {
+      const bool looks_up = features.textures.looks_up(TextureSlot(slot));
+      texture[slot] = append(looks_up, sizeof(TextureRecord));
+      look_up[slot] = look_ups;
+      if (looks_up) look_ups += int{sizeof(TextureLookUp)} + footprint_bytes(TextureSlot(slot));
+    }
     aim = append(features.multiple_importance, sizeof(AimRecord));
   }
 };

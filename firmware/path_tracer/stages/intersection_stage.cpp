@@ -6,7 +6,7 @@ namespace path_tracer {
 
 int IntersectionStage::load_bytes(const ProgramConfig& config) {
   const RecordSizes sizes(config.features);
-  const int bytes = sizes.hit + sizes.surface + sizes.path;
+  const int bytes = sizes.hit + sizes.surface + sizes.look_ups + sizes.path;
   return config.casts_shadow_rays() ? bytes + int{sizeof(LightRecord)} : bytes;
 }
 
@@ -22,6 +22,7 @@ IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
   const RecordSizes& sizes = context_.layout.sizes;
   loads.hit = cutter.take_bytes<HitRecord>(sizes.hit);
   loads.surface = cutter.take_bytes<SurfaceRecord>(sizes.surface);
+  loads.look_ups = cutter.take_bytes<TextureLookUp>(sizes.look_ups);
   BufferCutter same_place(cutter);
   loads.path = cutter.take_bytes<PathRecord>(sizes.path);
   loads.light = cutter.take<LightRecord>();
@@ -47,13 +48,53 @@ void IntersectionStage::load(std::uint64_t step, int block) {
   const LaneMask segments = bin.segments();
   const RecordSizes& sizes = context_.layout.sizes;
   load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live, sizes.hit);
-  context_.loads.copy_m2p(step, block, with_tail(to.surface, sizes.surface),
-                          context_.machine.places_in(bin.surface_place), bin.hit_something);
+  load_surfaces(step, block);
   load_block(step, block, to.path, context_.layout.path_bin, segments, sizes.path);
   if (!context_.config.casts_shadow_rays()) return;
   context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),
                           segments);
   load_block(step, block, to.lighting, context_.layout.lighting_bin, bin.shadow);
+}
+
+/// A shadow ray needs no more of a tail than the texture of the light that it hit.
+void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
+  const Loads to = loads(step);
+  const int bytes = context_.layout.sizes.surface;
+  const Bins::Block& bin = bin_block(block);
+  const cn::MonoPlaces places = context_.machine.places_in(bin.surface_place);
+  const bool spares_tails = context_.config.casts_shadow_rays() && bytes > int{sizeof(SurfaceRecord)} &&
+                            !context_.config.features.textures.has(TextureSlot::emission);
+  const LaneMask with_tails = spares_tails ? bin.hit_something.without(bin.shadow) : bin.hit_something;
+  context_.loads.copy_m2p(step, block, with_tail(to.surface, bytes), places, with_tails);
+  if (spares_tails)
+    context_.loads.copy_m2p(step, block, to.surface.span(), places, bin.hit_something.without(with_tails));
+}
+
+void IntersectionStage::prepare(std::uint64_t step, int block) {
+  context_.loads.wait(step);
+  for (int slot = 0; slot < kTextureSlots; ++slot)
+    if (context_.config.features.textures.looks_up(TextureSlot(slot)))
+      load_texels(step, block, TextureSlot(slot));
+}
+
+void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot slot) {
+  const Loads from = loads(step);
+  const RecordSizes& sizes = context_.layout.sizes;
+  const Bins::Block& bin = bin_block(block);
+  LaneMask needs;
+  LookUpArguments arguments;
+  arguments.hit = from.hit;
+  arguments.texture = PolyPointer<TextureRecord>(from.surface.span().offset_bytes + sizes.texture[int(slot)]);
+  arguments.footprint_bytes = footprint_bytes(slot);
+  arguments.look_up =
+      PolyPointer<TextureLookUp>(from.look_ups.span().offset_bytes + sizes.look_up[int(slot)]);
+  arguments.needs = &needs;
+  const bool is_for_lights = slot == TextureSlot::emission;
+  context_.machine.run(context_.kernels.look_up, arguments,
+                       is_for_lights ? bin.hit_something : bin.hit_something.without(bin.shadow));
+  const cn::PolySpan look_up = arguments.look_up.span();
+  context_.loads.copy_m2p(step, block, {look_up.offset_bytes + look_up.size_bytes, footprint_bytes(slot)},
+                          context_.machine.places_in(arguments.look_up.field(&TextureLookUp::place)), needs);
 }
 
 void IntersectionStage::process(std::uint64_t step, int block) {
@@ -88,17 +129,19 @@ void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
   if (context_.config.features.plain()) {
     context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
   } else {
-    shade(arguments, bin.segments());
+    shade(from, arguments, bin.segments());
   }
 }
 
-void IntersectionStage::shade(const ScatterArguments& arguments, const LaneMask& segments) {
+void IntersectionStage::shade(const Loads& from, const ScatterArguments& arguments,
+                              const LaneMask& segments) {
   ShadeArguments shading;
   static_cast<ScatterArguments&>(shading) = arguments;
   shading.features = context_.config.features;
   shading.sizes = context_.layout.sizes;
   shading.estimator = context_.config.estimator;
   shading.environment = context_.layout.environment;
+  shading.look_ups = from.look_ups;
   context_.machine.run(context_.kernels.shade, shading, segments);
 }
 
@@ -108,6 +151,8 @@ void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block
   arguments.surface = from.surface;
   arguments.lighting = from.lighting;
   arguments.is_in_layers = context_.layout.layers.any;
+  arguments.sizes = context_.layout.sizes;
+  arguments.look_ups = from.look_ups;
   arguments.direct_light = to.direct_light;
   context_.machine.run(context_.kernels.illuminate, arguments, bin_block(block).shadow);
 }

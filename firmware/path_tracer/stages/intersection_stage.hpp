@@ -19,6 +19,11 @@ class IntersectionStage : public Stage {
 
   const char* name() const override { return "intersection stage"; }
   void load(std::uint64_t step, int block) override;
+  bool prepares() const override { return context_.config.features.textures.any(); }
+  /// Surfaces with their tails take too much SRAM for buffers of their own.
+  bool loads_early() const override { return false; }
+  /// Loads texels.
+  void prepare(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
 
@@ -26,6 +31,7 @@ class IntersectionStage : public Stage {
   struct Loads {
     PolyPointer<HitRecord> hit;
     PolyPointer<SurfaceRecord> surface;
+    PolyPointer<TextureLookUp> look_ups;
     PolyPointer<PathRecord> path;  // segments
     PolyPointer<LightRecord> light;
     PolyPointer<LightingRecord> lighting;  // shadow rays
@@ -39,7 +45,9 @@ class IntersectionStage : public Stage {
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;
   void scatter(const Loads& from, const Saves& to, int block);
-  void shade(const ScatterArguments& arguments, const LaneMask& segments);
+  void load_surfaces(std::uint64_t step, int block);
+  void load_texels(std::uint64_t step, int block, TextureSlot slot);
+  void shade(const Loads& from, const ScatterArguments& arguments, const LaneMask& segments);
   void illuminate(const Loads& from, const Saves& to, int block);
 
   RayStore& rays_;

@@ -46,6 +46,9 @@ class Stage {
   virtual void load(std::uint64_t step, int block) = 0;
   /// Whether the stage has a second load phase.
   virtual bool prepares() const { return false; }
+  /// Whether the first loads of such a stage go to buffers of its own, so that they may begin before there is
+  /// room in the ring for the second ones.
+  virtual bool loads_early() const { return prepares(); }
   /// Second load phase, issued when the addresses from the first have arrived.
   virtual void prepare(std::uint64_t /*step*/, int /*block*/) {}
   virtual void process(std::uint64_t step, int block) = 0;

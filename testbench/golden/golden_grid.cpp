@@ -196,7 +196,7 @@ class GridReader {
   fs::path directory_;
   std::string file_;
   int samples_ = 0;
-  std::size_t combinations_ = 0;                         ///< of the grids so far
+  std::size_t combinations_ = 0;  ///< of the grids so far
 };
 
 }  // namespace

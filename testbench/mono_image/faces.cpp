@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <numeric>
 #include <unordered_map>
 
 #include "firmware/path_tracer/records/records.hpp"
+#include "testbench/scene/exact_coordinates.hpp"
 
 namespace testbench {
 namespace {
@@ -20,16 +20,7 @@ struct Point {
 };
 
 struct HashOfPoint {
-  std::size_t operator()(const Point& point) const {
-    std::uint64_t hash = 0;
-    for (const double coordinate : point.coordinate) {
-      std::uint64_t bits;
-      std::memcpy(&bits, &coordinate, sizeof(bits));
-      hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 29;
-    }
-    return hash;
-  }
+  std::size_t operator()(const Point& point) const { return hash_of_coordinates(point.coordinate); }
 };
 
 /// The triangles at each edge. Edges of triangles that have the same two vertices form a group.

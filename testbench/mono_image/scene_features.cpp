@@ -55,8 +55,7 @@ void add_textures(const Material& material, const path_tracer::Lobes& lobes,
 }  // namespace
 
 path_tracer::Features features_of(const Scene& scene, const path_tracer::ProgramConfig& config) {
-  std::vector<bool> is_used(scene.materials.size());
-  for (const Triangle& triangle : scene.triangles) is_used[std::size_t(triangle.material)] = true;
+  const std::vector<bool> is_used = materials_in_use(scene.triangles, scene.materials.size());
   path_tracer::Features features;
   features.lobes = {};
   for (std::size_t i = 0; i < is_used.size(); ++i)

@@ -142,8 +142,7 @@ bool shows_roughness_with_metallic(const Material& material) {
 TextureImages::TextureImages(const Scene& scene, const path_tracer::TextureSlots& slots)
     : scene_(scene), slots_(slots) {
   if (!slots.any()) return;
-  std::vector<bool> is_used(scene.materials.size());
-  for (const Triangle& triangle : scene.triangles) is_used[std::size_t(triangle.material)] = true;
+  const std::vector<bool> is_used = materials_in_use(scene.triangles, scene.materials.size());
   for (std::size_t i = 0; i < is_used.size(); ++i) {
     for (int index = 0; index < path_tracer::kTextureSlots; ++index) {
       const auto slot = TextureSlot(index);

@@ -97,10 +97,10 @@ void require_triangles(const Mesh& mesh, const std::filesystem::path& file) {
 }
 
 void keep_used_materials(const std::vector<Material>& all, Mesh& mesh) {
-  std::vector<std::int32_t> new_index(all.size(), -1);
-  for (const Triangle& triangle : mesh.triangles) new_index[static_cast<std::size_t>(triangle.material)] = 0;
+  const std::vector<bool> is_used = materials_in_use(mesh.triangles, all.size());
+  std::vector<std::int32_t> new_index(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (new_index[i] < 0) continue;
+    if (!is_used[i]) continue;
     new_index[i] = static_cast<std::int32_t>(mesh.materials.size());
     mesh.materials.push_back(all[i]);
   }

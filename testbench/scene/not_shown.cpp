@@ -33,8 +33,7 @@ constexpr NotShown kNotShown[] = {
 }  // namespace
 
 void note_what_is_not_shown(Scene& scene, const std::string& file) {
-  std::vector<bool> is_used(scene.materials.size());
-  for (const Triangle& triangle : scene.triangles) is_used[std::size_t(triangle.material)] = true;
+  const std::vector<bool> is_used = materials_in_use(scene.triangles, scene.materials.size());
   for (const NotShown& kind : kNotShown) {
     std::size_t times = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i)

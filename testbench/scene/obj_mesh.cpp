@@ -365,8 +365,7 @@ class ObjFaceReader {
 
   /// Reads the textures of the materials that faces have, and notes what of these is left out.
   void finish_used_materials() {
-    std::vector<bool> is_used(materials_.size(), false);
-    for (const Triangle& triangle : mesh_.triangles) is_used[std::size_t(triangle.material)] = true;
+    const std::vector<bool> is_used = materials_in_use(mesh_.triangles, materials_.size());
     for (std::size_t i = 0; i < content_.materials.size(); ++i) {
       if (!is_used[i]) continue;
       const MtlTextureFiles files{content_.folders[i], options_.reach, *options_.textures,

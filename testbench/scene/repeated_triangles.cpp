@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <vector>
+
+#include "testbench/scene/exact_coordinates.hpp"
 
 namespace testbench {
 namespace {
@@ -23,17 +24,6 @@ Coordinates coordinates_of(const Triangle& triangle) {
   return coordinates;
 }
 
-std::uint64_t hash_of(const Coordinates& coordinates) {
-  std::uint64_t hash = 0;
-  for (const double coordinate : coordinates) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &coordinate, sizeof(bits));
-    hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
 struct HashedTriangle {
   std::uint64_t hash;
   std::size_t index;
@@ -45,7 +35,7 @@ std::size_t remove_repeated_triangles(Scene& scene) {
   std::vector<HashedTriangle> hashed;
   hashed.reserve(scene.triangles.size());
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
-    hashed.push_back({hash_of(coordinates_of(scene.triangles[i])), i});
+    hashed.push_back({hash_of_coordinates(coordinates_of(scene.triangles[i])), i});
   std::sort(hashed.begin(), hashed.end(), [](const HashedTriangle& a, const HashedTriangle& b) {
     return a.hash != b.hash ? a.hash < b.hash : a.index < b.index;
   });

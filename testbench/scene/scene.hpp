@@ -21,6 +21,13 @@ struct Triangle {
   std::int32_t material = 0;  ///< index into Scene::materials
 };
 
+/// Which of so many materials the triangles have.
+inline std::vector<bool> materials_in_use(const std::vector<Triangle>& triangles, std::size_t materials) {
+  std::vector<bool> in_use(materials, false);
+  for (const Triangle& triangle : triangles) in_use[std::size_t(triangle.material)] = true;
+  return in_use;
+}
+
 /// A pinhole camera, or an orthographic one, whose rays are parallel. Pixel x grows along cross(direction,
 /// up), to the right of a viewer who looks along `direction`; pixel y grows along -up. So with direction +z
 /// and up +y, larger world x lies further left in the picture.

@@ -8,34 +8,20 @@ namespace bsdf_energy_test {
 using cn::poly;
 using path_tracer::BsdfConfig;
 using path_tracer::Lobes;
+using test_support::at_angle;
+using test_support::config_of;
 using test_support::MonoMaterial;
 using test_support::MonoPoint;
 using test_support::MonoSample;
 using test_support::MonoValue;
 using test_support::Numbers;
 using test_support::PerPe;
+using test_support::seen_from_above;
 using test_support::unit;
 using test_support::Vector;
 
 constexpr double kPi = path_tracer::kPi;
 constexpr path_tracer::AlbedoNeeds kRough{true, false, true};
-
-Vector at_angle(double cosine, double around) {
-  const double sine = std::sqrt(1 - cosine * cosine);
-  return {sine * std::cos(around), sine * std::sin(around), cosine};
-}
-
-MonoPoint seen_at(double cosine) {
-  MonoPoint point;
-  point.to_viewer = at_angle(cosine, 0.4);
-  return point;
-}
-
-BsdfConfig config_of(std::initializer_list<bool Lobes::*> members) {
-  BsdfConfig config;
-  for (bool Lobes::*member : members) config.lobes.*member = true;
-  return config;
-}
 
 /// GGX that reflects everything: a medium so thin that reflection is total at all but a few angles.
 MonoMaterial perfect_reflector(double alpha) {
@@ -109,7 +95,8 @@ TEST_F(MaterialsEnergy, SingleScatteringLosesWhatItShould) {
                                 {1, 0.76021, 0.45069, 0.32751, 1 - std::log(2.0)}};
   for (const auto& row : expected)
     for (int i = 0; i < 4; ++i) {
-      EXPECT_NEAR(furnace(config, perfect_reflector(row[0]), seen_at(cosines[i])).x, row[i + 1], 1.5e-3)
+      EXPECT_NEAR(furnace(config, perfect_reflector(row[0]), seen_from_above(cosines[i])).x, row[i + 1],
+                  1.5e-3)
           << row[0] << " " << cosines[i];
       EXPECT_NEAR(integrate_ggx(cosines[i], row[0]).albedo, row[i + 1], 1e-4) << row[0] << " " << cosines[i];
     }
@@ -186,13 +173,13 @@ TEST_F(MaterialsEnergy, WhiteFurnace) {
     for (const double cosine : {0.05, 0.1, 0.3, 0.5, 0.9, 1.0})
       for (MonoMaterial material : {metal, varnish, half}) {
         material.roughness = roughness;
-        EXPECT_NEAR(furnace(plastic, material, seen_at(cosine), 1 << 18).x, 1, 0.009)
+        EXPECT_NEAR(furnace(plastic, material, seen_from_above(cosine), 1 << 18).x, 1, 0.009)
             << "metallic " << material.metallic << ", roughness " << roughness << ", cosine " << cosine;
       }
   for (const double cosine : {0.05, 0.3, 1.0})
     for (MonoMaterial material : {metal, varnish, half}) {
       material.roughness = 0;
-      EXPECT_NEAR(furnace(plastic, material, seen_at(cosine)).x, 1, 0.005) << cosine;
+      EXPECT_NEAR(furnace(plastic, material, seen_from_above(cosine)).x, 1, 0.005) << cosine;
     }
 }
 
@@ -217,7 +204,7 @@ TEST_F(MaterialsEnergy, LayersGainNothing) {
           MonoMaterial both = cloth;
           both.coat = 1;
           const auto total = [&](const MonoMaterial& m) {
-            return furnace(config, m, seen_at(cosine), 1 << 16).x;
+            return furnace(config, m, seen_from_above(cosine), 1 << 16).x;
           };
           for (const double found : {total(coated), total(cloth), total(both)})
             EXPECT_LT(found, 1.01) << roughness << " " << layer << " " << cosine;
@@ -232,9 +219,9 @@ TEST_F(MaterialsEnergy, VarnishOnBlackReflectsFourPercent) {
   material.base_color = {0, 0, 0};
   material.roughness = 0.2;
   const BsdfConfig config = config_of({&Lobes::diffuse, &Lobes::glossy});
-  EXPECT_NEAR(furnace(config, material, seen_at(1)).x, 0.04 * 0.9984, 2e-4);
+  EXPECT_NEAR(furnace(config, material, seen_from_above(1)).x, 0.04 * 0.9984, 2e-4);
   material.f0 = path_tracer::reflectance_at_normal(2);
-  EXPECT_NEAR(furnace(config, material, seen_at(1)).x, 0.9984 / 9, 3e-4);
+  EXPECT_NEAR(furnace(config, material, seen_from_above(1)).x, 0.9984 / 9, 3e-4);
   EXPECT_EQ(path_tracer::reflectance_at_normal(0), 1.0);
 }
 

@@ -7,32 +7,18 @@ namespace bsdf_glass_test {
 
 using path_tracer::BsdfConfig;
 using path_tracer::Lobes;
+using test_support::at_angle;
+using test_support::config_of;
 using test_support::MonoMaterial;
 using test_support::MonoPoint;
 using test_support::MonoSample;
 using test_support::MonoValue;
 using test_support::PerPe;
+using test_support::seen_from_above;
 using test_support::unit;
 using test_support::Vector;
 
 constexpr double kPi = path_tracer::kPi;
-
-Vector at_angle(double cosine, double around) {
-  const double sine = std::sqrt(1 - cosine * cosine);
-  return {sine * std::cos(around), sine * std::sin(around), cosine};
-}
-
-MonoPoint seen_at(double cosine) {
-  MonoPoint point;
-  point.to_viewer = at_angle(cosine, 0.4);
-  return point;
-}
-
-BsdfConfig config_of(std::initializer_list<bool Lobes::*> members) {
-  BsdfConfig config;
-  for (bool Lobes::*member : members) config.lobes.*member = true;
-  return config;
-}
 
 class MaterialsGlass : public test_support::MaterialBench {
  protected:
@@ -74,7 +60,7 @@ TEST_F(MaterialsGlass, FrostedGlass) {
     double sum = 0;
     constexpr std::size_t kSamples = 1 << 17;
     const double eta_squared = material.thin ? 1 : material.eta * material.eta;
-    for (const MonoSample& s : sample_all(config, material, seen_at(cosine), even_numbers(kSamples)))
+    for (const MonoSample& s : sample_all(config, material, seen_from_above(cosine), even_numbers(kSamples)))
       sum += s.weight.x * (s.transmits ? eta_squared : 1);
     return sum / kSamples;
   };
@@ -115,7 +101,7 @@ TEST_F(MaterialsGlass, SlabOfGlass) {
   const auto split = [&](const MonoMaterial& material, double cosine) {
     Branch branch;
     const std::vector<MonoSample> samples =
-        sample_all(config, material, seen_at(cosine), {{0.5, 0.5, 1e-9}, {0.5, 0.5, 1 - 1e-9}});
+        sample_all(config, material, seen_from_above(cosine), {{0.5, 0.5, 1e-9}, {0.5, 0.5, 1 - 1e-9}});
     EXPECT_FALSE(samples[0].transmits);
     EXPECT_TRUE(samples[0].is_delta);
     EXPECT_TRUE(samples[1].transmits);
@@ -152,7 +138,8 @@ TEST_F(MaterialsGlass, SmoothGlassReflectsFresnelsShare) {
   for (const double cosine : {1.0, 0.5, 0.1}) {
     double reflected = 0;
     constexpr std::size_t kSamples = 1 << 16;
-    for (const MonoSample& s : sample_all(config, material, seen_at(cosine), even_numbers(kSamples))) {
+    for (const MonoSample& s :
+         sample_all(config, material, seen_from_above(cosine), even_numbers(kSamples))) {
       reflected += !s.transmits;
       // Radiance is compressed by eta^2 behind the surface.
       EXPECT_NEAR(s.weight.x, s.transmits ? 1 / 2.25 : 1.0, 1e-14);
@@ -160,17 +147,17 @@ TEST_F(MaterialsGlass, SmoothGlassReflectsFresnelsShare) {
     EXPECT_NEAR(reflected / kSamples, fresnel(1.5, cosine), 2e-4);
   }
   material.thin = true;
-  for (const MonoSample& s : sample_all(config, material, seen_at(0.5), even_numbers(1024))) {
+  for (const MonoSample& s : sample_all(config, material, seen_from_above(0.5), even_numbers(1024))) {
     EXPECT_NEAR(s.weight.x, 1, 1e-14);
     if (!s.transmits) continue;
-    EXPECT_NEAR(dot(s.direction, seen_at(0.5).to_viewer), -1, 1e-14);
+    EXPECT_NEAR(dot(s.direction, seen_from_above(0.5).to_viewer), -1, 1e-14);
   }
   material.thin = false;
   material.eta = 1;  // no boundary: straight on, with nothing lost
-  for (const MonoSample& s : sample_all(config, material, seen_at(0.5), even_numbers(1024))) {
+  for (const MonoSample& s : sample_all(config, material, seen_from_above(0.5), even_numbers(1024))) {
     EXPECT_TRUE(s.transmits);
     EXPECT_NEAR(s.weight.x, 1, 1e-14);
-    EXPECT_NEAR(dot(s.direction, seen_at(0.5).to_viewer), -1, 1e-14);
+    EXPECT_NEAR(dot(s.direction, seen_from_above(0.5).to_viewer), -1, 1e-14);
   }
 }
 
@@ -188,7 +175,7 @@ TEST_F(MaterialsGlass, RouletteFactorsUndoTheCompression) {
         PerPe<double> weight = per_pe<double>();
         PerPe<double> factor = per_pe<double>();
         run([&] {
-          const path_tracer::Bsdf bsdf = prepare(config, material, seen_at(0.9));
+          const path_tracer::Bsdf bsdf = prepare(config, material, seen_from_above(0.9));
           const path_tracer::BsdfSample found = sample(bsdf, {0.5, 0.5}, choice);
           test_support::store(weight, found.weight.x);
           test_support::store(factor, path_tracer::roulette_factor(bsdf, found));
@@ -206,7 +193,7 @@ TEST_F(MaterialsGlass, RoughGlassTransmitsWhatQuadratureSays) {
   double reflected = 0;
   double transmitted = 0;
   constexpr std::size_t kSamples = 1 << 19;
-  for (const MonoSample& s : sample_all(config, material, seen_at(0.6), even_numbers(kSamples)))
+  for (const MonoSample& s : sample_all(config, material, seen_from_above(0.6), even_numbers(kSamples)))
     (s.transmits ? transmitted : reflected) += s.weight.x;
   EXPECT_NEAR(transmitted / kSamples * 2.25, 0.874226, 3e-4);
   EXPECT_NEAR(reflected / kSamples, 0.038171, 2e-4);
@@ -219,7 +206,7 @@ TEST_F(MaterialsGlass, RoughGlassTransmitsWhatQuadratureSays) {
       directions.push_back(at_angle(-1 + 2 * (i + 0.5) / kHeights, 2 * kPi * (j + 0.5) / kAround));
   double below = 0;
   double above = 0;
-  const std::vector<MonoValue> values = evaluate_all(config, material, seen_at(0.6), directions);
+  const std::vector<MonoValue> values = evaluate_all(config, material, seen_from_above(0.6), directions);
   for (std::size_t i = 0; i < values.size(); ++i)
     (directions[i].z < 0 ? below : above) += values[i].value.x * 4 * kPi / (double(kHeights) * kAround);
   EXPECT_NEAR(below * 2.25, 0.874226, 2e-4);
@@ -267,7 +254,7 @@ TEST_F(MaterialsGlass, ValuesAreTheTextbooks) {
         std::vector<Vector> lights;
         for (const double z : {0.97, 0.6, 0.2, 0.03, -0.03, -0.2, -0.6, -0.97})
           for (const double around : {0.4, 1.0, 2.9, 3.6}) lights.push_back(at_angle(z, around));
-        const MonoPoint point = seen_at(viewer);
+        const MonoPoint point = seen_from_above(viewer);
         const std::vector<MonoValue> values = evaluate_all(config, material, point, lights);
         for (std::size_t i = 0; i < lights.size(); ++i) {
           const double expected = textbook(alpha, eta, point.to_viewer, lights[i]) * std::abs(lights[i].z);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
 #include <random>
 #include <vector>
 
@@ -38,6 +39,25 @@ struct MonoPoint {
   Vector to_viewer{0, 0, 1};
   Vector geometric_normal{0, 0, 1};
 };
+
+/// Unit length, at this cosine from the z axis.
+inline Vector at_angle(double cosine, double around) {
+  const double sine = std::sqrt(1 - cosine * cosine);
+  return {sine * std::cos(around), sine * std::sin(around), cosine};
+}
+
+/// A surface that faces +z.
+inline MonoPoint seen_from_above(double cosine) {
+  MonoPoint point;
+  point.to_viewer = at_angle(cosine, 0.4);
+  return point;
+}
+
+inline path_tracer::BsdfConfig config_of(std::initializer_list<bool path_tracer::Lobes::*> members) {
+  path_tracer::BsdfConfig config;
+  for (bool path_tracer::Lobes::*member : members) config.lobes.*member = true;
+  return config;
+}
 
 struct MonoValue {
   Vector value;

@@ -11,26 +11,18 @@
 
 #include "testbench/scene/obj_mesh.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/scene/mesh_area.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace obj_mesh_test {
 
+using test_support::total_area;
 using testbench::load_obj_mesh;
 using testbench::Mesh;
 
 constexpr const char* kMaterials = "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0.25 0.5 1\nKe 4 5 6\n";
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-
-glm::dvec3 area(const testbench::Triangle& t) {
-  return 0.5 * glm::cross(t.vertex[1] - t.vertex[0], t.vertex[2] - t.vertex[0]);
-}
-
-double total_area(const Mesh& mesh) {
-  double sum = 0.0;
-  for (const auto& triangle : mesh.triangles) sum += area(triangle).z;
-  return sum;
-}
 
 class ObjMeshTest : public test_support::DirectoryFixture {
  protected:

@@ -5,22 +5,15 @@
 #include <string>
 
 #include "testbench/scene/obj_mesh.hpp"
+#include "tests/scene/mesh_area.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 namespace obj_polygon_test {
 
+using test_support::area;
+using test_support::total_area;
 using testbench::Mesh;
-
-glm::dvec3 area(const testbench::Triangle& t) {
-  return 0.5 * glm::cross(t.vertex[1] - t.vertex[0], t.vertex[2] - t.vertex[0]);
-}
-
-double total_area(const Mesh& mesh) {
-  double sum = 0.0;
-  for (const auto& triangle : mesh.triangles) sum += area(triangle).z;
-  return sum;
-}
 
 /// Faces with the material grey.
 class ObjPolygonTest : public test_support::DirectoryFixture {

@@ -187,6 +187,29 @@ TEST(MaterialsRender, NormalsOfCornersTurnTheShading) {
   EXPECT_NEAR(mean.value.x, 0.5 * 0.5 * (1.0 + std::cos(angle)), 5 * std::sqrt(mean.variance.x));
 }
 
+/// Within a body, direct light fades on its way to the viewer as all other light does: shadow rays and hits
+/// agree.
+TEST(MaterialsRender, DirectLightFadesInABody) {
+  Material body = glass(0.0, 1.0);
+  body.specular = 0.0;
+  body.transmission = 0.5;  // the other half is reflected diffusely
+  body.attenuation_colour = {0.5, 0.25, 1.0};
+  body.attenuation_distance = 1.0;
+  Material light;
+  light.emission = glm::dvec3(1.0);
+  Scene scene = seen_from_afar(2.0, {8, 8});
+  scene.materials = {body, light};
+  add_box(scene, {20.0, 20.0, 11.0}, 0);  // the camera is in it, one unit from the wall behind
+  scene.camera.direction = {0.0, 0.0, 1.0};
+  add_square(scene, {-2, -2, 9}, {4, 0, 0}, {0, 4, 0}, 1);  // behind the camera, faces the wall
+  const Mean by_hits = mean_of(render_natively(scene, independent(Program::segments, 4096)).film);
+  const Mean by_rays = mean_of(render_natively(scene, independent(Program::full, 1024)).film);
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(by_rays.value[channel], by_hits.value[channel],
+                5 * std::sqrt(by_hits.variance[channel] + by_rays.variance[channel]));
+  EXPECT_LT(by_rays.value.y, 0.6 * by_rays.value.x);
+}
+
 /// By hits, by shadow rays and by both: the same light.
 TEST(MaterialsRender, EstimatorsAgree) {
   struct Case {

@@ -27,7 +27,13 @@ struct ShadedVertex {
   Bsdf bsdf;
   /// Where hits and shadow rays share the light. Elsewhere it comes by shadow rays alone.
   mask shares_light;
+  Rgb arrived;  ///< share of the vertex's light that the segment to the viewer lets through; read by dimmed()
 };
+
+/// Light of a vertex at the start of the segment that hit it.
+inline Rgb dimmed(const ShadeArguments& arguments, const Rgb& light, const Rgb& arrived) {
+  return arguments.features.lobes.absorption ? light * arrived : light;
+}
 
 /// Multiplies a material by what its textures show at the hit.
 inline void apply_textures(const ShadeArguments& arguments, Material& material) {
@@ -82,7 +88,7 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
 
 /// Whether the material reflects only diffusely.
 inline mask is_diffuse(const Lobes& lobes, const Material& material) {
-  mask diffuse = poly<double>(0.0) == poly<double>(0.0);
+  mask diffuse(cn::mask_from_bits(0xff));
   if (lobes.specular()) diffuse = diffuse & (material.metallic == 0.0) & (material.f90 == 0.0);
   if (lobes.transmissive()) diffuse = diffuse & (material.transmission == 0.0);
   if (lobes.coat) diffuse = diffuse & (material.coat == 0.0);
@@ -145,7 +151,7 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
     const poly<double> weight = power_heuristic(cn::select(facing, here, poly<double>(1.0)), value.pdf);
     scale = scale * cn::select(vertex.shares_light, weight, poly<double>(1.0));
   }
-  const Rgb contribution = value.value * scale;
+  const Rgb contribution = dimmed(arguments, value.value * scale, vertex.arrived);
   arguments.shadow_ray.set(&RayRecord::origin, vertex.position);
   arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
   arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
@@ -159,10 +165,11 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
            *arguments.casts);
 }
 
-/// Absorption of the segment that arrives, if it went through the body of the surface that it hit.
+/// Absorption of the segment that arrives, if it went through the body of the surface that it hit. Empty in
+/// scenes without absorption.
 inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
+  if (!arguments.features.lobes.absorption) return {};
   const poly<double> one = 1.0;
-  if (!arguments.features.lobes.absorption) return {one, one, one};
   const Rgb coefficient = tail<AbsorptionRecord>(arguments.surface, arguments.sizes.absorption)
                               .get(&AbsorptionRecord::coefficient);
   const poly<double> distance = tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::distance);
@@ -197,7 +204,7 @@ inline Bsdf bsdf_at_hit(const ShadeArguments& arguments, const Direction3& norma
 
 /// Where hits and shadow rays share the light.
 inline mask shares_light(const ShadeArguments& arguments, const Material& material) {
-  const mask all = poly<double>(0.0) == poly<double>(0.0);
+  const mask all(cn::mask_from_bits(0xff));
   switch (arguments.estimator) {
     case Estimator::light:
       return !all;
@@ -223,9 +230,8 @@ inline poly<double> survival_of(const ShadeArguments& arguments, const poly<std:
   return cn::select(depth < arguments.roulette_start, poly<double>(1.0), survival);
 }
 
-/// Continues the path or ends it by Russian roulette. Returns the lanes that may reflect light.
-inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& vertex, const mask& hit,
-                        const Rgb& arrived) {
+/// Continues the path or ends it by Russian roulette.
+inline void continue_at(const ShadeArguments& arguments, const ShadedVertex& vertex, const mask& hit) {
   const PolyPointer<PathRecord>& path = arguments.path;
   const poly<std::int32_t> pixel = path.get(&PathRecord::pixel);
   const poly<std::int32_t> number = path.get(&PathRecord::sample);
@@ -243,8 +249,9 @@ inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& ver
   const Rgb none{0.0, 0.0, 0.0};
   arguments.scatter.set(&ScatterRecord::position, vertex.position);
   arguments.scatter.set(&ScatterRecord::direction, sample.direction);
-  arguments.scatter.set(&ScatterRecord::weight,
-                        cn::select(goes_on, sample.weight * arrived * inverse_survival, none));
+  arguments.scatter.set(
+      &ScatterRecord::weight,
+      cn::select(goes_on, dimmed(arguments, sample.weight, vertex.arrived) * inverse_survival, none));
   arguments.scatter.set(&ScatterRecord::face, arguments.surface.get(&SurfaceRecord::face));
   arguments.scatter.set(&ScatterRecord::ended,
                         cn::select(goes_on, poly<std::int32_t>(0), poly<std::int32_t>(1)));
@@ -252,7 +259,6 @@ inline mask continue_at(const ShadeArguments& arguments, const ShadedVertex& ver
   tail<DirectionRecord>(arguments.scatter)
       .set(&DirectionRecord::pdf,
            cn::select(sample.is_delta | sample.transmits, poly<double>(kInfinity), shared));
-  return hit;
 }
 
 inline void shade(const ShadeArguments& arguments) {
@@ -268,14 +274,14 @@ inline void shade(const ShadeArguments& arguments) {
   const Rgb outside = arguments.features.environment
                           ? Rgb{arguments.environment.x, arguments.environment.y, arguments.environment.z}
                           : none;
-  const Rgb inside = cn::select(front, emission * arrived, none);
+  const Rgb inside = cn::select(front, dimmed(arguments, emission, arrived), none);
   arguments.scatter.set(&ScatterRecord::radiance, cn::select(hit, inside, outside));
 
   const Bsdf bsdf = bsdf_at_hit(arguments, normal, front);
   const ShadedVertex vertex{arguments.hit.get(&HitRecord::position), bsdf,
-                            shares_light(arguments, bsdf.material)};
-  const mask reflects = continue_at(arguments, vertex, hit, arrived);
-  if (arguments.casts_shadow_rays) aim(arguments, vertex, reflects);
+                            shares_light(arguments, bsdf.material), arrived};
+  continue_at(arguments, vertex, hit);
+  if (arguments.casts_shadow_rays) aim(arguments, vertex, hit);
 }
 
 }  // namespace path_tracer

@@ -25,10 +25,16 @@ bool is_audited(const std::string& id, const SweepFile& file) {
   return share < file.audit_share;
 }
 
-/// What the firmware sees of a scene: the host's image of it, for a firmware that all scenes share.
+/// What the firmware sees of a scene: the host's image of it, for a firmware that all scenes share, and light
+/// from outside, which the layout holds.
 std::string scene_digest(const Scene& scene) {
   const MonoImage image = make_normal_mono_image(scene, cn::kStripLanes, path_tracer::ProgramConfig());
-  return sha256({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
+  std::string seen(reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size());
+  if (image.layout.features.environment) {
+    const cn::vec3<double>& outside = image.layout.environment;
+    seen.append(reinterpret_cast<const char*>(&outside), sizeof(outside));
+  }
+  return sha256(seen);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "testbench/sweep/sweep_plan.hpp"
 #include "testbench/sweep/sweep_points.hpp"
 #include "testbench/system/error.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 namespace sweep_file_test {
 
@@ -96,6 +97,23 @@ TEST_F(SweepFileTest, PointsHaveTheirSettingsAndTheirOwnNames) {
   EXPECT_NE(other_samples.points()[0].id, sweep.points()[0].id);
   EXPECT_NE(other_samples.points()[0].stream, sweep.points()[0].stream);
   EXPECT_THROW(Sweep(file, {{"firmware.n", "3", "--set"}}), InputError);
+}
+
+/// A finished point is taken over by its name, so two lights from outside must not share one.
+TEST_F(SweepFileTest, LightFromOutsideIsPartOfAPointsName) {
+  const test_support::TemporaryDirectory folder;
+  std::ofstream(folder.path() / "m.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto id_under = [&](const std::string& radiance) {
+    std::ofstream(folder.path() / "scene.toml")
+        << "[camera]\nposition = [0, 0, 9]\nlook_at = [0, 0, 0]\nvertical_fov_degrees = 40\n"
+        << "[environment]\nconstant = " << radiance << "\n[[mesh]]\nfile = \"m.obj\"\n";
+    const SweepFile file =
+        load("scene = \"" + folder.path().string() + "\"\nsize = \"8x6\"\n[[axis]]\nfirmware.n = [0, 1]\n");
+    return Sweep(file, {}).points()[0].id;
+  };
+  const std::string white = id_under("[1, 1, 1]");
+  EXPECT_EQ(id_under("[1, 1, 1]"), white);
+  EXPECT_NE(id_under("[1, 1, 2]"), white);
 }
 
 TEST_F(SweepFileTest, EveryParameterCanBeAnAxis) {

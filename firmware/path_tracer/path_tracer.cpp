@@ -18,7 +18,9 @@ int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
 
 int save_buffer_bytes(const ProgramConfig& config) {
   return std::max({RayStage::save_bytes(config), IntersectionStage::save_bytes(config),
-                   PathStage::save_bytes(config), config.uses_tree() ? TreeStage::save_bytes(config) : 0});
+                   PathStage::save_bytes(config),
+                   config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
+                   config.uses_tree() ? TreeStage::save_bytes(config) : 0});
 }
 
 ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
@@ -67,6 +69,8 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       radiance_rings_(make_radiance_rings(machine, config_)),
       search_(make_search(context(rings_))),
       intersection_stage_(context(rings_), search_->rays()),
+      hit_binning_(config_.bins_hits() ? std::make_unique<HitBinning>(context(rings_), search_->rays())
+                                       : nullptr),
       path_stage_(context(rings_), search_->rays(), work),
       steps_(machine, {rings_.loads, rings_.saves, config_.load_buffers()}),
       radiance_(context(radiance_rings_), rings_.saves) {}
@@ -100,6 +104,7 @@ void PathTracer::run_next_step() {
   if (is_ray_step) radiance_.before_ray_step();
   const Step step = steps_.run_next();
   if (step.stage == &path_stage_) after_path_step(step);
+  if (hit_binning_ && hit_binning_->after_step(steps_, step, pass_.blocks())) plan_path_stage();
   if (!is_ray_step) return;
   if (search_->after_step(steps_, step, pass_.blocks())) plan_after_search();
   radiance_.after_ray_step();
@@ -127,7 +132,12 @@ void PathTracer::begin_pass() {
 }
 
 void PathTracer::plan_after_search() {
+  if (hit_binning_) return hit_binning_->begin_pass(steps_, pass_.blocks());
   for (const int block : pass_.blocks()) steps_.plan(intersection_stage_, block);
+  plan_path_stage();
+}
+
+void PathTracer::plan_path_stage() {
   for (const int block : pass_.blocks()) steps_.plan(path_stage_, block);
 }
 

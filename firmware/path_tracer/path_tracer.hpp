@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "firmware/path_tracer/pipeline/hit_binning.hpp"
 #include "firmware/path_tracer/pipeline/pass.hpp"
 #include "firmware/path_tracer/pipeline/pass_radiance.hpp"
 #include "firmware/path_tracer/pipeline/ray_search.hpp"
@@ -45,6 +46,7 @@ class PathTracer {
   void take_into_next_pass(int block);
   void begin_pass();
   void plan_after_search();
+  void plan_path_stage();
   void report_fill(int block);
   static Rings make_rings(cn::Machine& machine, const ProgramConfig& config, const Layers& layers);
   static Rings make_radiance_rings(cn::Machine& machine, const ProgramConfig& config);
@@ -62,6 +64,7 @@ class PathTracer {
   Rings radiance_rings_;
   std::unique_ptr<RaySearch> search_;
   IntersectionStage intersection_stage_;
+  std::unique_ptr<HitBinning> hit_binning_;  ///< in its place, or null
   PathStage path_stage_;
   StepPipeline steps_;
   PassRadiance radiance_;

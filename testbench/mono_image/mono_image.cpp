@@ -15,6 +15,7 @@
 #include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
+#include "testbench/mono_image/shading_kinds.hpp"
 #include "testbench/mono_image/texture_images.hpp"
 #include "testbench/scene/film_ray.hpp"
 #include "testbench/scene/normalise.hpp"
@@ -379,6 +380,15 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
   }
 }
 
+/// The kind of each triangle's material, where hits wait in bins of their kind.
+void put_shading_kinds(MonoImage& image, const Scene& scene, path_tracer::Shading shading) {
+  if (image.layout.sizes.shading_kind == path_tracer::RecordSizes::kNone) return;
+  const std::vector<std::int32_t> kinds = shading_kinds(scene, shading);
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i)
+    put_tail(image, i, image.layout.sizes.shading_kind,
+             path_tracer::ShadingKindRecord{kinds[std::size_t(scene.triangles[i].material)]});
+}
+
 }  // namespace
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options) {
@@ -411,6 +421,7 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   if (config.uses_tree()) put_light_runs(image, triangles, lights);
   put_surfaces(image, triangles, lights);
   put_textures(image, textures, triangles.count());
+  put_shading_kinds(image, scene, config.shading);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
   if (config.uses_tree())

@@ -5,6 +5,7 @@
 
 #include "firmware/path_tracer/materials/material.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
+#include "testbench/mono_image/shading_kinds.hpp"
 #include "testbench/mono_image/texture_images.hpp"
 
 namespace testbench {
@@ -14,7 +15,8 @@ bool is_smooth(double roughness) {
   return roughness * roughness < path_tracer::kSmoothAlpha;
 }
 
-/// Adds the lobes that a material has at any of its texels.
+}  // namespace
+
 void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes& lobes) {
   const MaterialTextures& textures = material.textures;
   const TexturedRange metallic = textured_range(scene, material.metallic, textures.metallic);
@@ -38,6 +40,8 @@ void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes&
   if (material.clearcoat > 0) lobes.coat = true;
   if (material.sheen_colour != glm::dvec3(0.0)) lobes.sheen = true;
 }
+
+namespace {
 
 /// Adds the slots that a material has a texture for, as far as the lobes of the scene read them.
 void add_textures(const Material& material, const path_tracer::Lobes& lobes,
@@ -78,6 +82,10 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
   features.multiple_importance = config.program != path_tracer::Program::segments && features.lights &&
                                  (config.estimator == path_tracer::Estimator::mis ||
                                   (config.estimator == path_tracer::Estimator::per_lobe && has_shared));
+  if (config.bins_hits()) {
+    const std::vector<std::int32_t> kinds = shading_kinds(scene, config.shading);
+    features.shading_kinds = 1 + *std::max_element(kinds.begin(), kinds.end());
+  }
   return features;
 }
 

@@ -8,6 +8,9 @@ namespace testbench {
 /// What the firmware must be built for to render the scene with these options.
 path_tracer::Features features_of(const Scene& scene, const path_tracer::ProgramConfig& config);
 
+/// Adds the lobes that a material has at any of its texels.
+void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes& lobes);
+
 /// The options with the features of the scene.
 path_tracer::ProgramConfig built_for(const Scene& scene, path_tracer::ProgramConfig config);
 

@@ -202,9 +202,25 @@ void continue_paths(const ContinuePathsArguments& arguments) {
   cn::keep(starts | !ended, *arguments.live);
 }
 
-void finished_place(const FinishedPlaceArguments& arguments) {
-  arguments.finished_place.write(
-      place_of(arguments.next_finished, arguments.number.read(), sizeof(FinishedRecord)));
+void numbered_place(const NumberedPlaceArguments& arguments) {
+  arguments.place.write(place_of(arguments.records, arguments.number.read()));
+}
+
+void bin_hit(const BinHitArguments& arguments) {
+  const mask hit_something = kept_mask(*arguments.hit_something);
+  arguments.hit.set(&BinnedHit::surface_place,
+                    cn::select(hit_something, arguments.surface_place.read(), poly<MonoAddress>(0u)));
+  arguments.hit.set(&BinnedHit::light_place, arguments.light_place.read());
+  arguments.hit.set(&BinnedHit::slot, cn::pe_num() + arguments.first_slot);
+}
+
+void locate_slot(const LocateSlotArguments& arguments) {
+  const poly<std::int32_t> slot = arguments.slot.read();
+  for (int i = 0; i < arguments.places; ++i) arguments.place[i].write(place_of(arguments.records[i], slot));
+}
+
+void flag(const FlagArguments& arguments) {
+  arguments.flag.write(cn::select(kept_mask(*arguments.lanes), poly<MonoAddress>(1u), poly<MonoAddress>(0u)));
 }
 
 void list(const ListArguments& arguments) {
@@ -284,9 +300,13 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),
       cn::kernel<ContinuePathsArguments, continue_paths>("continue_paths"),
-      cn::kernel<FinishedPlaceArguments, finished_place>("finished_place"),
+      cn::kernel<NumberedPlaceArguments, numbered_place>("finished_place"),
       cn::kernel<ListArguments, list>("list"),
       cn::kernel<FoldArguments, fold>("fold"),
+      cn::kernel<BinHitArguments, bin_hit>("bin_hit"),
+      cn::kernel<NumberedPlaceArguments, numbered_place>("binned_hit_place"),
+      cn::kernel<LocateSlotArguments, locate_slot>("locate_slot"),
+      cn::kernel<FlagArguments, flag>("flag"),
       TRAVERSAL_KERNELS,
       PACKET_KERNELS,
   };

@@ -65,6 +65,7 @@ struct ShadeArguments : ScatterArguments {
   Features features;
   RecordSizes sizes{Features{}};
   Estimator estimator = Estimator::per_lobe;
+  bool skips_absent_lobes = true;
   vec3<double> environment{};  ///< radiance from outside
   PolyPointer<TextureLookUp> look_ups;
 };
@@ -127,11 +128,35 @@ struct ContinuePathsArguments {
   LaneMask* live = nullptr;
 };
 
-/// Path stage: where the finished paths are saved, packed by ascending numbers.
-struct FinishedPlaceArguments {
+/// Where records are saved, packed by ascending numbers: finished paths of the path stage, and binned hits.
+struct NumberedPlaceArguments {
   PolyField<std::int32_t> number;
-  MonoAddress next_finished = 0;
-  PolyField<MonoAddress> finished_place;
+  MonoRecords records;  ///< from the one with number 0 on
+  PolyField<MonoAddress> place;
+};
+
+/// Bins of hits: what a slot's ray hit.
+struct BinHitArguments {
+  PolyField<MonoAddress> surface_place;
+  PolyField<MonoAddress> light_place;
+  int first_slot = 0;
+  const LaneMask* hit_something = nullptr;
+  PolyPointer<BinnedHit> hit;
+};
+
+/// Bins of hits: where the records of a slot are.
+struct LocateSlotArguments {
+  static constexpr int kMaxPlaces = 4;
+  PolyField<std::int32_t> slot;
+  int places = 0;
+  MonoRecords records[kMaxPlaces];
+  PolyField<MonoAddress> place[kMaxPlaces];
+};
+
+/// Bins of hits: a condition as a record, which recall() reads.
+struct FlagArguments {
+  const LaneMask* lanes = nullptr;
+  PolyField<MonoAddress> flag;
 };
 
 /// Kept in poly memory for each finished path while its vertices are added up.
@@ -180,9 +205,13 @@ struct Kernels {
   cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;
   cn::Kernel<ContinuePathsArguments> continue_paths;
-  cn::Kernel<FinishedPlaceArguments> finished_place;
+  cn::Kernel<NumberedPlaceArguments> finished_place;
   cn::Kernel<ListArguments> list;
   cn::Kernel<FoldArguments> fold;
+  cn::Kernel<BinHitArguments> bin_hit;
+  cn::Kernel<NumberedPlaceArguments> binned_hit_place;
+  cn::Kernel<LocateSlotArguments> locate_slot;
+  cn::Kernel<FlagArguments> flag;
   const TraversalKernels& (*traversal)();  ///< of the same level, as `packet`
   const PacketKernels& (*packet)();
 };

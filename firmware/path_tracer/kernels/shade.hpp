@@ -195,7 +195,7 @@ inline Bsdf bsdf_at_hit(const ShadeArguments& arguments, const Direction3& norma
   config.shading_normals = arguments.features.normals;
   config.lobes = arguments.features.lobes;
   config.diffuse_pdf = arguments.features.multiple_importance;
-  config.skips_absent_lobes = true;
+  config.skips_absent_lobes = arguments.skips_absent_lobes;
   const Direction3 to_viewer = tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction) * -1.0;
   const Direction3 shading =
       shading_normal(arguments, arguments.hit.get(&HitRecord::position), normal, front, to_viewer);

@@ -13,7 +13,8 @@ namespace path_tracer {
 namespace {
 
 void enqueue(const EnqueueArguments& arguments) {
-  arguments.ray.set(&QueuedRay::slot, cn::pe_num() + arguments.first_slot);
+  arguments.ray.set(&QueuedRay::slot, arguments.slots != nullptr ? arguments.slots->read()
+                                                                 : cn::pe_num() + arguments.first_slot);
   arguments.ray.set(&QueuedRay::light, light_number(arguments.light_place.read(), arguments.lights));
   arguments.place.write(place_of(arguments.first_place, arguments.number.read(), sizeof(QueuedRay)));
 }

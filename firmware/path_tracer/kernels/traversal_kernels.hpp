@@ -35,7 +35,8 @@ struct EnqueueArguments {
   PolyField<MonoAddress> light_place;  ///< place of the light of each shadow ray
   MonoAddress lights = 0;
   int first_slot = 0;
-  MonoAddress first_place = 0;  ///< for number 0
+  const PolyField<std::int32_t>* slots = nullptr;  ///< of each PE; nullptr: `first_slot` and those behind it
+  MonoAddress first_place = 0;                     ///< for number 0
   PolyField<MonoAddress> place;
 };
 

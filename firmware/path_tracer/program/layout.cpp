@@ -106,6 +106,11 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots);
   layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);
   layout.path_bin = memory.take<PathRecord>("path bin", slots, layout.sizes.path);
+  if (config.bins_hits()) {
+    layout.binned_hits =
+        memory.take<BinnedHit>("binned hits", slots * std::uint64_t(hit_kinds(config.features)));
+    layout.casts_bin = memory.take<cn::MonoAddress>("casts bin", slots);
+  }
   layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
   layout.folds = memory.take<FoldRecord>("folds", slots);
   layout.finished = memory.take<FinishedRecord>("finished paths", slots);

@@ -51,6 +51,9 @@ struct Layout {
   cn::MonoPointer<LightingRecord> lighting_bin;
   cn::MonoPointer<DirectLightRecord> direct_light_bin;
   cn::MonoPointer<PathRecord> path_bin;
+  // Of bins of hits (Shading::material_bins): BinnedHits of each kind, and which slots cast a shadow ray.
+  cn::MonoPointer<BinnedHit> binned_hits;
+  cn::MonoPointer<cn::MonoAddress> casts_bin;
   cn::MonoPointer<VertexRecord> vertices;
   cn::MonoPointer<FoldRecord> folds;
   cn::MonoPointer<FinishedRecord> finished;
@@ -72,6 +75,14 @@ struct Layout {
 };
 
 Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& config);
+
+/// Kinds of hits that wait in bins of their own: shadow rays, misses and the materials'.
+inline constexpr int kShadowRayKind = 0;
+inline constexpr int kMissKind = 1;
+inline constexpr int kFirstMaterialKind = 2;
+inline int hit_kinds(const Features& features) {
+  return kFirstMaterialKind + features.shading_kinds;
+}
 
 /// Blocks of the traversal bin's ring: enough for all rays and for blocks that are being loaded or saved.
 int traversal_bin_blocks(const ProgramConfig& config);

@@ -35,6 +35,14 @@ enum class Estimator : std::uint8_t {
   per_lobe,  ///< diffuse surfaces by shadow rays, glossy ones by both
 };
 
+/// Which hits are shaded together, and which lobes they are charged for.
+enum class Shading : std::uint8_t {
+  every_lobe,     ///< a block of slots; every lobe of the scene is issued
+  present_lobes,  ///< a block of slots; a lobe that no hit of the block has is skipped
+  material_bins,  ///< hits whose materials have the same lobes; shadow rays and misses apart
+  texture_bins,   ///< the same, and whose materials use the same texture images
+};
+
 /// How a ray finds the triangles that it may hit.
 enum class Traversal : std::uint8_t {
   brute_force,  ///< by a test of every triangle
@@ -74,6 +82,7 @@ struct ProgramConfig {
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   Estimator estimator = Estimator::per_lobe;
+  Shading shading = Shading::present_lobes;
   std::uint64_t seed = 1;
   /// Pixels from one camera ray to the next, cyclic over the film; must have no common divisor with the
   /// number of pixels. The image is the same; only the distance between rays of one block changes.
@@ -82,6 +91,8 @@ struct ProgramConfig {
   TreeShape tree;
 
   bool uses_tree() const { return traversal != Traversal::brute_force; }
+  /// Whether hits wait in bins of their kind, instead of in their slots.
+  bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
   bool casts_shadow_rays() const { return program != Program::segments && features.lights; }
   bool buffers_loads() const { return buffer_loads && n > 0; }
   bool buffers_saves() const { return buffer_saves && n > 0; }

@@ -118,6 +118,10 @@ Options bins() {
           {"shadow_rays", "-", std::string("facing"), Names{"all", "facing"},
            "which shadow rays are cast: all, or those between a surface and a light that face each other",
            &read_shadow_rays, &write_shadow_rays},
+          choice<&ProgramConfig::shading>(
+              "shading", Shading::present_lobes, kShadingNames,
+              "hits that are shaded together: blocks of slots, for every lobe or for those present; or bins "
+              "of hits, by their material's lobes, or by these and its textures"),
           integer<&ProgramConfig::pixel_stride>(
               "pixel_stride", "pixels", 1, {1, kMaxStride},
               "from one camera ray to the next: 1 in order, more to shuffle; the image is the same")};

@@ -65,6 +65,8 @@ struct Features {
   bool environment = false;  ///< light that arrives from outside
   bool normals = false;      ///< that vary over triangles
   TextureSlots textures;
+  /// Kinds of materials that are shaded apart (Shading::material_bins); 1 where nothing tells them apart.
+  int shading_kinds = 1;
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 

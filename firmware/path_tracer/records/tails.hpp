@@ -45,6 +45,20 @@ struct NormalRecord {
   vec3<double> along_z{};
 };
 
+/// Behind a SurfaceRecord, where hits wait in bins of their kind.
+struct ShadingKindRecord {
+  std::int32_t kind = 0;  ///< 0 to Features::shading_kinds - 1
+  std::int32_t unused = 0;
+};
+
+/// Record of the bins of hits (Shading::material_bins): a ray whose search is over.
+struct BinnedHit {
+  cn::MonoAddress surface_place = 0;  ///< 0: it hit nothing
+  cn::MonoAddress light_place = 0;
+  std::int32_t slot = 0;
+  std::int32_t unused = 0;
+};
+
 /// Values of TextureRecord::wrap_x and wrap_y: what stands beyond an image's edge (glTF 2.0,
 /// section 3.8.4.5).
 enum class TextureWrap : std::int32_t { repeat, mirrored_repeat, clamp_to_edge };
@@ -126,6 +140,7 @@ struct RecordSizes {
   int normal = kNone;
   int texture[kTextureSlots] = {};
   int aim = kNone;
+  int shading_kind = kNone;
 
   /// Look-ups of all texture slots of the scene, each a TextureLookUp and its footprint: bytes, and each
   /// slot's place in them.
@@ -133,16 +148,17 @@ struct RecordSizes {
   int look_up[kTextureSlots] = {};
 
   explicit RecordSizes(const Features& features) {
-    if (features.plain()) return;
-    hit += int{sizeof(ArrivalRecord)};
-    scatter += int{sizeof(DirectionRecord)};
-    path += int{sizeof(DirectionRecord)};
     const auto append = [this](bool present, std::size_t bytes) {
       if (!present) return kNone;
       const int place = surface;
       surface += static_cast<int>(bytes);
       return place;
     };
+    shading_kind = append(features.shading_kinds > 1, sizeof(ShadingKindRecord));
+    if (features.plain()) return;
+    hit += int{sizeof(ArrivalRecord)};
+    scatter += int{sizeof(DirectionRecord)};
+    path += int{sizeof(DirectionRecord)};
     material = append(features.lobes.specular(), sizeof(MaterialRecord));
     absorption = append(features.lobes.absorption, sizeof(AbsorptionRecord));
     coat = append(features.lobes.coat, sizeof(CoatRecord));

@@ -36,41 +36,68 @@ IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   Saves saves;
   saves.scatter = cutter.take_bytes<ScatterRecord>(context_.layout.sizes.scatter);
   saves.lighting = cutter.take<LightingRecord>();
-  saves.shadow_ray = rays_.take_room(cutter);
+  saves.shadow_ray = ray_store_.take_room(cutter);
   saves.direct_light = same_place.take<DirectLightRecord>();
   return saves;
 }
 
+cn::MonoPlaces IntersectionStage::places(SlotRecord record, std::uint64_t /*step*/, int block) {
+  const Layout& layout = context_.layout;
+  switch (record) {
+    case SlotRecord::hit:
+      return block_of(layout.intersection_bin, block, layout.sizes.hit);
+    case SlotRecord::path:
+      return block_of(layout.path_bin, block, layout.sizes.path);
+    case SlotRecord::lighting:
+    case SlotRecord::new_lighting:
+      return block_of(layout.lighting_bin, block);
+    case SlotRecord::scatter:
+      return block_of(layout.scatter_bin, block, layout.sizes.scatter);
+    case SlotRecord::direct_light:
+      break;
+  }
+  return block_of(layout.direct_light_bin, block);
+}
+
 void IntersectionStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
+  load_records(step, block);
+}
+
+void IntersectionStage::load_records(std::uint64_t step, int block) {
   const Loads to = loads(step);
-  const Bins::Block& bin = bin_block(block);
+  const Bins::Block& bin = rays(block);
   const LaneMask segments = bin.segments();
   const RecordSizes& sizes = context_.layout.sizes;
-  load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live, sizes.hit);
+  load_slots(SlotRecord::hit, step, block, with_tail(to.hit, sizes.hit), bin.live);
   load_surfaces(step, block);
-  load_block(step, block, to.path, context_.layout.path_bin, segments, sizes.path);
+  load_slots(SlotRecord::path, step, block, with_tail(to.path, sizes.path), segments);
   if (!context_.config.casts_shadow_rays()) return;
-  context_.loads.copy_m2p(step, block, to.light.span(), context_.machine.places_in(bin.light_place),
-                          segments);
-  load_block(step, block, to.lighting, context_.layout.lighting_bin, bin.shadow);
+  context_.loads.copy_m2p(step, block_of_slots(block), to.light.span(),
+                          context_.machine.places_in(bin.light_place), segments);
+  load_slots(SlotRecord::lighting, step, block, to.lighting.span(), bin.shadow);
 }
 
 /// A shadow ray needs no more of a tail than the texture of the light that it hit.
 void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
   const Loads to = loads(step);
   const int bytes = context_.layout.sizes.surface;
-  const Bins::Block& bin = bin_block(block);
+  const Bins::Block& bin = rays(block);
   const cn::MonoPlaces places = context_.machine.places_in(bin.surface_place);
   const bool spares_tails = context_.config.casts_shadow_rays() && bytes > int{sizeof(SurfaceRecord)} &&
                             !context_.config.features.textures.has(TextureSlot::emission);
   const LaneMask with_tails = spares_tails ? bin.hit_something.without(bin.shadow) : bin.hit_something;
-  context_.loads.copy_m2p(step, block, with_tail(to.surface, bytes), places, with_tails);
+  context_.loads.copy_m2p(step, block_of_slots(block), with_tail(to.surface, bytes), places, with_tails);
   if (spares_tails)
-    context_.loads.copy_m2p(step, block, to.surface.span(), places, bin.hit_something.without(with_tails));
+    context_.loads.copy_m2p(step, block_of_slots(block), to.surface.span(), places,
+                            bin.hit_something.without(with_tails));
 }
 
 void IntersectionStage::prepare(std::uint64_t step, int block) {
+  load_all_texels(step, block);
+}
+
+void IntersectionStage::load_all_texels(std::uint64_t step, int block) {
   context_.loads.wait(step);
   for (int slot = 0; slot < kTextureSlots; ++slot)
     if (context_.config.features.textures.looks_up(TextureSlot(slot)))
@@ -80,7 +107,7 @@ void IntersectionStage::prepare(std::uint64_t step, int block) {
 void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot slot) {
   const Loads from = loads(step);
   const RecordSizes& sizes = context_.layout.sizes;
-  const Bins::Block& bin = bin_block(block);
+  const Bins::Block& bin = rays(block);
   LaneMask needs;
   LookUpArguments arguments;
   arguments.hit = from.hit;
@@ -93,19 +120,20 @@ void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot s
   context_.machine.run(context_.kernels.look_up, arguments,
                        is_for_lights ? bin.hit_something : bin.hit_something.without(bin.shadow));
   const cn::PolySpan look_up = arguments.look_up.span();
-  context_.loads.copy_m2p(step, block, {look_up.offset_bytes + look_up.size_bytes, footprint_bytes(slot)},
+  context_.loads.copy_m2p(step, block_of_slots(block),
+                          {look_up.offset_bytes + look_up.size_bytes, footprint_bytes(slot)},
                           context_.machine.places_in(arguments.look_up.field(&TextureLookUp::place)), needs);
 }
 
 void IntersectionStage::process(std::uint64_t step, int block) {
-  const Loads from = loads(step);
-  const Saves to = saves(step);
-  scatter(from, to, block);
-  if (context_.config.casts_shadow_rays()) illuminate(from, to, block);
+  process_segments(step, block);
+  if (context_.config.casts_shadow_rays()) process_shadow_rays(step, block);
 }
 
-void IntersectionStage::scatter(const Loads& from, const Saves& to, int block) {
-  Bins::Block& bin = bin_block(block);
+void IntersectionStage::process_segments(std::uint64_t step, int block) {
+  const Loads from = loads(step);
+  const Saves to = saves(step);
+  Bins::Block& bin = rays(block);
   bin.casts = LaneMask{};
   ScatterArguments arguments;
   arguments.hit = from.hit;
@@ -140,12 +168,15 @@ void IntersectionStage::shade(const Loads& from, const ScatterArguments& argumen
   shading.features = context_.config.features;
   shading.sizes = context_.layout.sizes;
   shading.estimator = context_.config.estimator;
+  shading.skips_absent_lobes = context_.config.shading != Shading::every_lobe;
   shading.environment = context_.layout.environment;
   shading.look_ups = from.look_ups;
   context_.machine.run(context_.kernels.shade, shading, segments);
 }
 
-void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block) {
+void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {
+  const Loads from = loads(step);
+  const Saves to = saves(step);
   IlluminateArguments arguments;
   arguments.hit = from.hit;
   arguments.surface = from.surface;
@@ -154,18 +185,18 @@ void IntersectionStage::illuminate(const Loads& from, const Saves& to, int block
   arguments.sizes = context_.layout.sizes;
   arguments.look_ups = from.look_ups;
   arguments.direct_light = to.direct_light;
-  context_.machine.run(context_.kernels.illuminate, arguments, bin_block(block).shadow);
+  context_.machine.run(context_.kernels.illuminate, arguments, rays(block).shadow);
 }
 
 void IntersectionStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
-  const Bins::Block& bin = bin_block(block);
-  save_block(step, block, context_.layout.scatter_bin, from.scatter, bin.segments(),
-             context_.layout.sizes.scatter);
+  const Bins::Block& bin = rays(block);
+  save_slots(SlotRecord::scatter, step, block, with_tail(from.scatter, context_.layout.sizes.scatter),
+             bin.segments());
   if (!context_.config.casts_shadow_rays()) return;
-  rays_.save(context_.saves, step, block, from.shadow_ray, bin.light_place, bin.casts);
-  save_block(step, block, context_.layout.lighting_bin, from.lighting, bin.casts);
-  save_block(step, block, context_.layout.direct_light_bin, from.direct_light, bin.shadow);
+  ray_store_.save(context_.saves, step, slots(step, block), from.shadow_ray, bin.light_place, bin.casts);
+  save_slots(SlotRecord::new_lighting, step, block, from.lighting.span(), bin.casts);
+  save_slots(SlotRecord::direct_light, step, block, from.direct_light.span(), bin.shadow);
 }
 
 }  // namespace path_tracer

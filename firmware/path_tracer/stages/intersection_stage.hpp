@@ -13,7 +13,7 @@ namespace path_tracer {
 class IntersectionStage : public Stage {
  public:
   /// @param rays where shadow rays go
-  IntersectionStage(const StageContext& context, RayStore& rays) : Stage(context), rays_(rays) {}
+  IntersectionStage(const StageContext& context, RayStore& rays) : Stage(context), ray_store_(rays) {}
   static int load_bytes(const ProgramConfig& config);
   static int save_bytes(const ProgramConfig& config);
 
@@ -26,6 +26,23 @@ class IntersectionStage : public Stage {
   void prepare(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
+
+ protected:
+  /// Records that belong to slots.
+  enum class SlotRecord : std::uint8_t { hit, path, lighting, scatter, new_lighting, direct_light };
+
+  /// The rays of a step: of a block of slots, or of others in PEs that are not their slots'.
+  virtual Bins::Block& rays(int block) { return bin_block(block); }
+  virtual cn::MonoPlaces places(SlotRecord record, std::uint64_t step, int block);
+  /// The slots' block, for TransferRing::wait_block().
+  virtual int block_of_slots(int block) const { return block; }
+  virtual RaySlots slots(std::uint64_t /*step*/, int block) { return {block}; }
+
+  /// Loads all that does not depend on textures.
+  void load_records(std::uint64_t step, int block);
+  void load_all_texels(std::uint64_t step, int block);
+  void process_segments(std::uint64_t step, int block);
+  void process_shadow_rays(std::uint64_t step, int block);
 
  private:
   struct Loads {
@@ -44,13 +61,19 @@ class IntersectionStage : public Stage {
   };
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;
-  void scatter(const Loads& from, const Saves& to, int block);
+  void load_slots(SlotRecord record, std::uint64_t step, int block, cn::PolySpan to,
+                  const LaneMask& enabled) {
+    context_.loads.copy_m2p(step, block_of_slots(block), to, places(record, step, block), enabled);
+  }
+  void save_slots(SlotRecord record, std::uint64_t step, int block, cn::PolySpan from,
+                  const LaneMask& enabled) {
+    context_.saves.copy_p2m(step, block_of_slots(block), places(record, step, block), from, enabled);
+  }
   void load_surfaces(std::uint64_t step, int block);
   void load_texels(std::uint64_t step, int block, TextureSlot slot);
   void shade(const Loads& from, const ScatterArguments& arguments, const LaneMask& segments);
-  void illuminate(const Loads& from, const Saves& to, int block);
 
-  RayStore& rays_;
+  RayStore& ray_store_;
 };
 
 }  // namespace path_tracer

@@ -104,10 +104,11 @@ void PathStage::count_segments(int block) {
 
 void PathStage::list_finished(std::uint64_t step) {
   const int count = context_.machine.number_ascending(finished_, number_);
-  FinishedPlaceArguments arguments;
+  NumberedPlaceArguments arguments;
   arguments.number = number_;
-  arguments.next_finished = (context_.layout.finished + std::uint64_t(finished_count_)).address;
-  arguments.finished_place = saves(step).finished_place;
+  arguments.records = {(context_.layout.finished + std::uint64_t(finished_count_)).address,
+                       int{sizeof(FinishedRecord)}};
+  arguments.place = saves(step).finished_place;
   context_.machine.run(context_.kernels.finished_place, arguments, finished_);
   finished_count_ += count;
 }
@@ -166,7 +167,7 @@ void PathStage::save(std::uint64_t step, int block) {
                             from.finished.span(), finished_);
   }
   save_block(step, block, context_.layout.path_bin, from.path, continued_, context_.layout.sizes.path);
-  rays_.save(context_.saves, step, block, from.ray, bin_block(block).light_place, continued_);
+  rays_.save(context_.saves, step, {block}, from.ray, bin_block(block).light_place, continued_);
 }
 
 }  // namespace path_tracer

@@ -14,7 +14,7 @@ RayRoom RayQueue::take_room(BufferCutter& cutter) const {
   return {queued.part(&QueuedRay::ray), queued, cutter.take_place()};
 }
 
-void RayQueue::save(TransferRing& saves, std::uint64_t step, int block, const RayRoom& from,
+void RayQueue::save(TransferRing& saves, std::uint64_t step, const RaySlots& slots, const RayRoom& from,
                     PolyField<MonoAddress> light_place, const LaneMask& with_ray) {
   const int count = machine_.number_ascending(with_ray, number_);
   if (count == 0) return;
@@ -23,7 +23,8 @@ void RayQueue::save(TransferRing& saves, std::uint64_t step, int block, const Ra
   arguments.ray = from.queued;
   arguments.light_place = light_place;
   arguments.lights = lights_;
-  arguments.first_slot = block * machine_.num_pes();
+  arguments.first_slot = slots.block * machine_.num_pes();
+  if (!slots.is_block()) arguments.slots = &slots.slot;
   arguments.first_place = place(rays_);
   arguments.place = from.place;
   machine_.run(kernels_.traversal().enqueue, arguments, with_ray);

@@ -12,7 +12,7 @@ class RayQueue : public RayStore {
 
   RayRoom take_room(BufferCutter& cutter) const override;
   /// Appends the rays, packed.
-  void save(TransferRing& saves, std::uint64_t step, int block, const RayRoom& from,
+  void save(TransferRing& saves, std::uint64_t step, const RaySlots& slots, const RayRoom& from,
             PolyField<MonoAddress> light_place, const LaneMask& with_ray) override;
 
   int rays() const { return rays_; }  ///< appended since clear()

@@ -12,11 +12,13 @@ RayRoom RayBin::take_room(BufferCutter& cutter) const {
   return room;
 }
 
-void RayBin::save(TransferRing& saves, std::uint64_t step, int block, const RayRoom& from,
+void RayBin::save(TransferRing& saves, std::uint64_t step, const RaySlots& slots, const RayRoom& from,
                   PolyField<MonoAddress> /*light_place*/, const LaneMask& with_ray) {
-  const std::uint64_t first_slot = std::uint64_t(block) * std::uint64_t(num_pes_);
-  saves.copy_p2m(step, block, cn::MonoPlaces::array((first_ + first_slot).address, sizeof(RayRecord)),
-                 from.ray.span(), with_ray);
+  const std::uint64_t first_slot = std::uint64_t(slots.block) * std::uint64_t(machine_.num_pes());
+  const cn::MonoPlaces places = slots.is_block()
+                                    ? cn::MonoPlaces::array((first_ + first_slot).address, sizeof(RayRecord))
+                                    : machine_.places_in(slots.bin_place);
+  saves.copy_p2m(step, slots.block, places, from.ray.span(), with_ray);
 }
 
 }  // namespace path_tracer

@@ -14,6 +14,16 @@ struct RayRoom {
   PolyField<MonoAddress> place;   ///< in SRAM, for the mono address of `queued` until its save is over
 };
 
+/// The slots whose rays a step saves: those of a block, or in each PE one of its own.
+struct RaySlots {
+  int block = TransferRing::kNoBlock;
+  // Of PEs with slots of their own:
+  PolyField<std::int32_t> slot{};
+  PolyField<MonoAddress> bin_place{};  ///< of the slot in the ray bin of brute force
+
+  bool is_block() const { return block != TransferRing::kNoBlock; }
+};
+
 /// Store of the rays that stages make for the ray search: the ray bin of brute force or the ray queue of a
 /// tree traversal.
 class RayStore {
@@ -30,23 +40,22 @@ class RayStore {
   /// Saves the rays of the lanes `with_ray`.
   /// @param from its `ray` is filled
   /// @param light_place of the light of each shadow ray
-  virtual void save(TransferRing& saves, std::uint64_t step, int block, const RayRoom& from,
+  virtual void save(TransferRing& saves, std::uint64_t step, const RaySlots& slots, const RayRoom& from,
                     PolyField<MonoAddress> light_place, const LaneMask& with_ray) = 0;
 };
 
 /// The ray bin: one RayRecord for each slot.
 class RayBin : public RayStore {
  public:
-  RayBin(const cn::Machine& machine, const Layout& layout)
-      : first_(layout.ray_bin), num_pes_(machine.num_pes()) {}
+  RayBin(cn::Machine& machine, const Layout& layout) : machine_(machine), first_(layout.ray_bin) {}
 
   RayRoom take_room(BufferCutter& cutter) const override;
-  void save(TransferRing& saves, std::uint64_t step, int block, const RayRoom& from,
+  void save(TransferRing& saves, std::uint64_t step, const RaySlots& slots, const RayRoom& from,
             PolyField<MonoAddress> light_place, const LaneMask& with_ray) override;
 
  private:
+  cn::Machine& machine_;
   cn::MonoPointer<RayRecord> first_;
-  int num_pes_;
 };
 
 }  // namespace path_tracer

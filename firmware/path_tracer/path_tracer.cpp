@@ -125,7 +125,13 @@ void PathTracer::take_into_next_pass(int block) {
   search_->add_block(steps_, block);
 }
 
+void PathTracer::take_empty_blocks() {
+  for (int block = 0; block < config_.bin_blocks; ++block)
+    if (!bins_.blocks[std::size_t(block)].live.any()) take_into_next_pass(block);
+}
+
 void PathTracer::begin_pass() {
+  if (!config_.skips_empty_blocks && pass_.has_next()) take_empty_blocks();
   pass_.begin();
   count_pass(pass_.blocks(), bins_, counts_);
   if (search_->begin_pass(steps_, pass_.blocks())) plan_after_search();

@@ -45,6 +45,7 @@ class PathTracer {
   void after_path_step(const Step& step);
   void take_into_next_pass(int block);
   void begin_pass();
+  void take_empty_blocks();
   void plan_after_search();
   void plan_path_stage();
   void report_fill(int block);

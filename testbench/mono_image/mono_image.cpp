@@ -316,7 +316,8 @@ path_tracer::MaterialRecord material_record(const Material& material) {
 /// The normal at the corners as an affine function of the position.
 path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
   const Triangle& triangle = scene.triangles[index];
-  const CornerNormals& corners = scene.corners.normals[index];
+  const CornerNormals corners =
+      scene.corners.normals.empty() ? CornerNormals{} : scene.corners.normals[index];
   path_tracer::NormalRecord record;
   const bool is_flat = corners[0] == glm::dvec3(0.0);
   if (is_flat) {

@@ -56,6 +56,15 @@ void add_textures(const Material& material, const path_tracer::Lobes& lobes,
   add(path_tracer::TextureSlot::transmission, lobes.transmissive());
 }
 
+/// What a program that renders anything has, beyond what this scene's has.
+void add_every_feature(path_tracer::Features& features) {
+  features.lobes = path_tracer::kEveryLobe;
+  features.environment = true;
+  features.normals = true;
+  for (bool& uses : features.textures.uses) uses = true;
+  features.textures.roughness_with_metallic = false;
+}
+
 }  // namespace
 
 path_tracer::Features features_of(const Scene& scene, const path_tracer::ProgramConfig& config) {
@@ -78,6 +87,7 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
       [&](const Triangle& triangle) { return emission.of_material(triangle.material) != glm::dvec3(0.0); });
   features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
+  if (config.built_for == path_tracer::BuiltFor::anything) add_every_feature(features);
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();
   features.multiple_importance = config.program != path_tracer::Program::segments && features.lights &&
                                  (config.estimator == path_tracer::Estimator::mis ||

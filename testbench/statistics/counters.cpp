@@ -102,6 +102,8 @@ const Counters<RunCounts>& firmware_counters() {
       {{"segments", "count", "path segments traced"}, [](const RunCounts& c) { return Json(c.segments); }},
       {{"shadow_rays", "count", "shadow rays traced"},
        [](const RunCounts& c) { return Json(c.shadow_rays); }},
+      {{"culled_shadow_rays", "count", "hits without a shadow ray: dark, or their light faces away"},
+       [](const RunCounts& c) { return Json(c.culled_shadow_rays); }},
       {{"folds", "count", "paths flushed because their slot was full"},
        [](const RunCounts& c) { return Json(c.folds); }},
       {{"blocks", "count", "blocks of slots processed, over all passes"},

@@ -103,6 +103,17 @@ void add_simulator_rows(const RenderRequest& request, const RenderResult& result
                     text("%.1f times", rate / silicon) + text(" (paper: %.0f segments/s)", silicon));
 }
 
+/// "3412 of 15818 shadow rays": how often something was skipped.
+std::string of_all(std::uint64_t skipped, std::uint64_t rest, const char* what) {
+  return std::to_string(skipped) + " of " + std::to_string(skipped + rest) + " " + what;
+}
+
+void add_skips_row(const path_tracer::RunCounts& counts, Rows& rows) {
+  rows.emplace_back("skipped", of_all(counts.culled_shadow_rays, counts.shadow_rays, "shadow rays, ") +
+                                   of_all(counts.skipped_blocks, counts.blocks, "blocks of slots") +
+                                   " (csx600 bench skips: what that saves)");
+}
+
 void add_traversal_row(const RenderRequest& request, const path_tracer::RunCounts& counts, Rows& rows) {
   const path_tracer::ProgramConfig& program = request.options.program;
   std::string row = name_of(program.traversal);
@@ -148,6 +159,7 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
                                          text(" of %.0f paths", double(counts.paths)) +
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));
   add_traversal_row(request, counts, rows);
+  add_skips_row(counts, rows);
   if (result.chip) add_chip_rows(result, rows);
   add_simulator_rows(request, result, rows);
   std::string table;

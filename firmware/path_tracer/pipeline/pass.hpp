@@ -15,6 +15,8 @@ class Pass {
   /// The block has rays for the next pass.
   void add_to_next(int block) { next_.push_back(block); }
 
+  bool has_next() const { return !next_.empty(); }
+
   /// The next pass becomes the current one.
   void begin() {
     blocks_.swap(next_);

@@ -35,6 +35,12 @@ enum class Estimator : std::uint8_t {
   per_lobe,  ///< diffuse surfaces by shadow rays, glossy ones by both
 };
 
+/// What the firmware is built for.
+enum class BuiltFor : std::uint8_t {
+  scene,    ///< the features of its scene (records/features.hpp)
+  anything  ///< every feature, whatever the scene has
+};
+
 /// Which hits are shaded together, and which lobes they are charged for.
 enum class Shading : std::uint8_t {
   every_lobe,     ///< a block of slots; every lobe of the scene is issued
@@ -78,10 +84,12 @@ struct ProgramConfig {
   /// Below 1, so that paths between white surfaces end. Where it is below an albedo, weights grow from bounce
   /// to bounce by albedo / max_survival; above the albedo's square, their variance stays finite.
   double max_survival = 0.999999;
+  bool skips_empty_blocks = true;
   bool cull_shadow_rays = true;  ///< leave out those whose surface or light faces away
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   Estimator estimator = Estimator::per_lobe;
+  BuiltFor built_for = BuiltFor::scene;
   Shading shading = Shading::present_lobes;
   std::uint64_t seed = 1;
   /// Pixels from one camera ray to the next, cyclic over the film; must have no common divisor with the

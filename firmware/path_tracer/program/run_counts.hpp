@@ -41,9 +41,10 @@ struct RunCounts {
   std::uint64_t paths = 0;
   std::uint64_t segments = 0;
   std::uint64_t shadow_rays = 0;
-  std::uint64_t folds = 0;           ///< times that a full slot was flushed
-  std::uint64_t blocks = 0;          ///< blocks of slots processed, over all passes
-  std::uint64_t skipped_blocks = 0;  ///< empty blocks of slots that were skipped
+  std::uint64_t culled_shadow_rays = 0;  ///< hits without one: dark, or the light and the surface face away
+  std::uint64_t folds = 0;               ///< times that a full slot was flushed
+  std::uint64_t blocks = 0;              ///< blocks of slots processed, over all passes
+  std::uint64_t skipped_blocks = 0;      ///< empty blocks of slots that were skipped
   std::uint64_t steps = 0;
   std::vector<std::uint64_t> paths_by_segments;  ///< [s]: paths that ended with s segments
   PassCounts rays;                               ///< segments and shadow rays by pass

@@ -59,6 +59,8 @@ struct TextureSlots {
   }
 };
 
+inline constexpr Lobes kEveryLobe{true, true, true, true, true, true, true, true, true};
+
 struct Features {
   Lobes lobes{true};
   bool lights = true;        ///< triangles that emit, to aim shadow rays at

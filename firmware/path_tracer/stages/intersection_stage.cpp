@@ -159,6 +159,9 @@ void IntersectionStage::process_segments(std::uint64_t step, int block) {
   } else {
     shade(from, arguments, bin.segments());
   }
+  if (context_.config.casts_shadow_rays())
+    context_.counts.culled_shadow_rays +=
+        std::uint64_t(bin.hit_something.without(bin.shadow).count() - bin.casts.count());
 }
 
 void IntersectionStage::shade(const Loads& from, const ScatterArguments& arguments,

@@ -136,12 +136,13 @@ bool shares_plane(const SceneLayers& layers, const std::vector<std::size_t>& of_
 
 /// Writes, behind the triangles, a run of records for each light: all triangles of the light's face, or of
 /// the light itself where they share a plane. A shadow ray that hits one of them can stop at any nearer hit.
-/// If there are too many triangles, the run holds records that no ray hits. Shadow rays to that light then
-/// seem to miss it and search for the nearest hit as segments do.
+/// If there are too many triangles or none, the run holds records that no ray hits. Shadow rays to that light
+/// then seem to miss it and search for the nearest hit as segments do.
 void put_light_runs(MonoImage& image, const Triangles& all, const Lights& lights) {
   const std::vector<std::int32_t>& faces = all.faces;
   std::unordered_map<std::int32_t, std::vector<std::size_t>> of_face;
-  for (const LightRecord& light : lights.records) of_face[light.face];
+  for (const LightRecord& light : lights.records)
+    if (light.face >= 0) of_face[light.face];
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const auto found = of_face.find(faces[i]);
     if (found != of_face.end() && found->second.size() <= path_tracer::kLightRun) found->second.push_back(i);
@@ -150,7 +151,7 @@ void put_light_runs(MonoImage& image, const Triangles& all, const Lights& lights
   for (std::size_t light = 0; light < lights.records.size(); ++light) {
     const std::vector<std::size_t>& own = lights.triangles[light];
     const std::vector<std::size_t>& triangles =
-        shares_plane(all.layers, own) ? own : of_face[lights.records[light].face];
+        own.empty() || shares_plane(all.layers, own) ? own : of_face[lights.records[light].face];
     const std::size_t in_run = triangles.size() <= path_tracer::kLightRun ? triangles.size() : 0;
     for (std::size_t i = 0; i < path_tracer::kLightRun; ++i, ++place) {
       if (i < in_run) {
@@ -253,6 +254,20 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
   }
 }
 
+/// Texels of the environment's image, and suns.
+void put_outside(MonoImage& image, const Environment& environment, const Lights& lights) {
+  put(image, image.layout.suns, lights.suns.data(), lights.suns.size());
+  if (lights.environment_texels.empty()) return;
+  path_tracer::EnvironmentImage& of_layout = image.layout.environment_image;
+  of_layout.x_axis = to_record(environment.rotation[0]);
+  of_layout.y_axis = to_record(environment.rotation[1]);
+  of_layout.z_axis = to_record(environment.rotation[2]);
+  of_layout.width = environment.image->width;
+  of_layout.height = environment.image->height;
+  put(image, cn::MonoPointer<path_tracer::EnvironmentTexel>{of_layout.texels},
+      lights.environment_texels.data(), lights.environment_texels.size());
+}
+
 }  // namespace
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options) {
@@ -268,8 +283,11 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   path_tracer::SceneCounts counts;
   counts.triangles = static_cast<int>(scene.triangles.size());
   counts.lights = static_cast<int>(lights.records.size());
+  counts.light_classes = static_cast<int>(lights.classes.size());
   counts.tree_slots = static_cast<int>(tree.slots);
   counts.texture_bytes = textures.bytes();
+  counts.environment_texels = lights.environment_texels.size();
+  counts.suns = static_cast<int>(lights.suns.size());
   counts.has_layers = triangles.layers.layers().any;
   MonoImage image;
   image.layout = path_tracer::make_layout(counts, num_pes, config);
@@ -287,6 +305,8 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   put_textures(image, textures, triangles.count());
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
+  put_outside(image, scene.environment, lights);
+  put(image, image.layout.light_classes, lights.classes.data(), lights.classes.size());
   if (config.uses_tree())
     std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
   return image;

@@ -52,6 +52,21 @@ void add_textures(const Material& material, const path_tracer::Lobes& lobes,
   add(path_tracer::TextureSlot::transmission, lobes.transmissive());
 }
 
+path_tracer::LightKinds light_kinds(const Scene& scene) {
+  const MeanEmission emission(scene);
+  path_tracer::LightKinds kinds;
+  kinds.surfaces = std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
+    return emission.of_material(triangle.material) != glm::dvec3(0.0);
+  });
+  for (const Light& light : scene.lights) {
+    if (light.intensity == glm::dvec3(0.0)) continue;
+    const bool is_near = light.kind == LightKind::point || light.kind == LightKind::spot;
+    (is_near ? kinds.points : kinds.distant) = true;
+  }
+  kinds.environment = scene.environment.shows_image();
+  return kinds;
+}
+
 }  // namespace
 
 path_tracer::Features features_of(const Scene& scene, const path_tracer::ProgramConfig& config) {
@@ -68,14 +83,12 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
       features.textures.has(path_tracer::TextureSlot::roughness) &&
       features.textures.has(path_tracer::TextureSlot::metallic) &&
       std::all_of(scene.materials.begin(), scene.materials.end(), shows_roughness_with_metallic);
-  const MeanEmission emission(scene);
-  features.lights = std::any_of(
-      scene.triangles.begin(), scene.triangles.end(),
-      [&](const Triangle& triangle) { return emission.of_material(triangle.material) != glm::dvec3(0.0); });
+  features.lights = light_kinds(scene);
   features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();
-  features.multiple_importance = config.program != path_tracer::Program::segments && features.lights &&
+  features.multiple_importance = config.program != path_tracer::Program::segments &&
+                                 features.lights.can_be_hit() &&
                                  (config.estimator == path_tracer::Estimator::mis ||
                                   (config.estimator == path_tracer::Estimator::per_lobe && has_shared));
   return features;

@@ -10,6 +10,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/systemc_fixture.hpp"
 
 namespace environment_image_test {
 
@@ -142,7 +143,9 @@ TEST(EnvironmentImage, EstimatorsAgree) {
   }
 }
 
-TEST(EnvironmentImage, ChipAndTraversalsGiveOneImage) {
+class EnvironmentImageOnChip : public test_support::SystemCFixture {};
+
+TEST_F(EnvironmentImageOnChip, ChipAndTraversalsGiveOneImage) {
   Scene scene = test_support::sphere_under_light(6, {12, 8});
   scene.environment.image = random_image(64, 32);
   RenderOptions options = render_options(Program::full, 4);
@@ -155,6 +158,7 @@ TEST(EnvironmentImage, ChipAndTraversalsGiveOneImage) {
     for (const int n : {0, 2}) {
       options.program.n = n;
       EXPECT_EQ(testbench::render_natively(scene, options).film.rgb(), expected);
+      new_context();
       EXPECT_EQ(testbench::render_on_chip(scene, options).film.rgb(), expected);
     }
   }

@@ -9,6 +9,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/statistics.hpp"
+#include "tests/support/systemc_fixture.hpp"
 
 namespace lights_without_area_test {
 
@@ -178,8 +179,10 @@ TEST(LightsWithoutArea, TheCameraSeesTheSunsDisk) {
   }
 }
 
+class LightsWithoutAreaOnChip : public test_support::SystemCFixture {};
+
 /// Results do not depend on how the hits of shadow rays are searched for.
-TEST(LightsWithoutArea, AllTraversalsGiveOneImage) {
+TEST_F(LightsWithoutAreaOnChip, AllTraversalsGiveOneImage) {
   Scene scene = test_support::sphere_under_light(8, {12, 8});
   scene.lights = {point_at({0.3, 1.2, 0.1}), from_sky(LightKind::sun, 0.7, 0.1)};
   RenderOptions options = render_options(Program::full, 4);
@@ -190,6 +193,7 @@ TEST(LightsWithoutArea, AllTraversalsGiveOneImage) {
     EXPECT_EQ(testbench::render_natively(scene, options).film.rgb(), expected.film.rgb());
   }
   options.program.n = 2;
+  new_context();
   EXPECT_EQ(testbench::render_on_chip(scene, options).film.rgb(), expected.film.rgb());
 }
 

@@ -70,8 +70,10 @@ bool faces(const Triangle& light, const glm::dvec3& point) {
   return glm::dot(area_normal(light), point - light.vertex[0]) > 0;
 }
 
-/// Whether the front of any light looks at the camera or at a point that the camera sees.
+/// Whether the front of any light looks at the camera or at a point that the camera sees. Lights without
+/// triangles may look anywhere.
 bool any_light_faces(const Scene& scene, const std::vector<ViewedPoint>& points) {
+  if (!scene.lights.empty() || scene.environment.is_lit()) return true;
   return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& light) {
     const auto is_faced = [&](const ViewedPoint& viewed) { return faces(light, viewed.point); };
     return is_light(scene, light) &&

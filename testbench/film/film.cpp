@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "model/memory/huge_pages.hpp"
+#include "testbench/mono_image/emitter.hpp"
 #include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/memory.hpp"
@@ -226,9 +227,34 @@ std::string Film::sha256() const {
   return digest.finish();
 }
 
+namespace {
+
+double largest_channel(const glm::dvec3& colour) {
+  return std::max({colour.x, colour.y, colour.z});
+}
+
+/// The radiance of what a light without area lights strongly: a surface at a sixteenth of the scene's radius
+/// from a point, or one that faces a sun. A sun's disk may be 2^20 times as bright.
+double radiance_by(const Light& light, double radius) {
+  const bool is_near = light.kind == LightKind::point || light.kind == LightKind::spot;
+  const double distance = radius / 16.0;
+  return largest_channel(light.intensity) / (is_near ? distance * distance : 1.0);
+}
+
+double largest_radiance(const Environment& environment) {
+  if (!environment.image) return largest_channel(environment.constant);
+  const std::vector<float>& rgb = environment.image->rgb;
+  return environment.scale * double(*std::max_element(rgb.begin(), rgb.end()));
+}
+
+}  // namespace
+
 double film_scale(const Scene& scene) {
-  const glm::dvec3& outside = scene.environment.constant;
-  double largest = std::max({0.0, outside.x, outside.y, outside.z});
+  double largest = std::max(0.0, largest_radiance(scene.environment));
+  if (!scene.lights.empty()) {
+    const double radius = surroundings_of(scene).radius;
+    for (const Light& light : scene.lights) largest = std::max(largest, radiance_by(light, radius));
+  }
   for (const Material& material : scene.materials) {
     for (int channel = 0; channel < 3; ++channel) largest = std::max(largest, material.emission[channel]);
   }

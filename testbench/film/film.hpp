@@ -118,8 +118,9 @@ class Film {
   RejectedSamples rejected_;
 };
 
-/// The scale for a film of this scene: the smallest power of two not below its largest emission, within 2^-40
-/// .. 2^40.
+/// The scale for a film of this scene: the smallest power of two not below its largest emission, the largest
+/// radiance of its environment and what its lights without area make of surfaces near them, within 2^-40 ..
+/// 2^40.
 double film_scale(const Scene& scene);
 
 }  // namespace testbench

@@ -15,6 +15,11 @@ double spot_share(const Light& spot, double cosine) {
   return share * share;
 }
 
+bool Environment::shows_image() const {
+  return image && scale > 0.0 &&
+         std::any_of(image->rgb.begin(), image->rgb.end(), [](float channel) { return channel > 0.0f; });
+}
+
 glm::dvec2 environment_place(const glm::dvec3& direction) {
   const double longitude = std::atan2(direction.x, -direction.z);
   const double colatitude = std::atan2(std::hypot(direction.x, direction.z), direction.y);

@@ -44,8 +44,10 @@ struct Environment {
   double scale = 1.0;                  ///< multiplies the image
   glm::dmat3 rotation{1.0};            ///< from the image's directions to the scene's
 
-  /// Whether it lights anything.
+  /// Whether it lights anything; a black image may not.
   bool is_lit() const { return image || constant != glm::dvec3(0.0); }
+  /// Whether it has an image that is not black.
+  bool shows_image() const;
 };
 
 /// Where in an environment's image a direction of the image lies, from (0, 0), the upper left corner, to

@@ -5,33 +5,27 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <optional>
 #include <unordered_map>
 
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/barycentric.hpp"
 #include "testbench/mono_image/faces.hpp"
-#include "testbench/mono_image/mean_emission.hpp"
+#include "testbench/mono_image/lights.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
 #include "testbench/mono_image/shading_kinds.hpp"
 #include "testbench/mono_image/texture_images.hpp"
+#include "testbench/mono_image/to_record.hpp"
 #include "testbench/scene/film_ray.hpp"
 #include "testbench/scene/normalise.hpp"
-#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {
 
 using path_tracer::CameraRecord;
 using path_tracer::LightRecord;
-using path_tracer::LightShape;
 using path_tracer::SurfaceRecord;
-
-cn::vec3<double> to_record(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
 
 CameraRecord camera_record(const Camera& camera, const FilmSize& film) {
   const FilmPlane plane = film_plane(camera, film);
@@ -84,126 +78,6 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
   record.face = face;
   record.light = light;
   return record;
-}
-
-struct Lights {
-  std::vector<LightRecord> records;
-  std::vector<double> cdf;
-  std::vector<std::vector<std::size_t>> triangles;  ///< of each light
-};
-
-/// Part of the scene that is sampled as one light.
-struct Emitter {
-  glm::dvec3 vertex;
-  glm::dvec3 edge1;
-  glm::dvec3 edge2;
-  LightShape shape;
-  glm::dvec3 emission;  ///< mean radiance, estimated
-  std::int32_t material;
-  std::int32_t face;
-  std::vector<std::size_t> triangles;
-};
-
-double area(const Emitter& emitter) {
-  const double parallelogram = glm::length(glm::cross(emitter.edge1, emitter.edge2));
-  return emitter.shape == LightShape::triangle ? 0.5 * parallelogram : parallelogram;
-}
-
-/// The radiant power of a light, up to a common factor. Lights are chosen in proportion to it.
-double power(const Emitter& emitter) {
-  const glm::dvec3& emission = emitter.emission;
-  return area(emitter) * (emission.x + emission.y + emission.z);
-}
-
-/// The rectangle that two triangles of one face and material form; std::nullopt if they form none. The
-/// tolerance for rounding is 2^-40.
-std::optional<Emitter> join(const Emitter& a, const Emitter& b) {
-  constexpr double kTolerance = 0x1p-40;
-  if (a.face != b.face || a.material != b.material) return {};
-  const glm::dvec3 corners_a[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
-  const glm::dvec3 corners_b[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
-  for (int i = 0; i < 3; ++i) {
-    // The right angle lies at a corner of `a`, the opposite corner is one of `b`.
-    Emitter joined = a;
-    joined.emission = 0.5 * (a.emission + b.emission);
-    joined.vertex = corners_a[i];
-    joined.edge1 = corners_a[(i + 1) % 3] - joined.vertex;
-    joined.edge2 = corners_a[(i + 2) % 3] - joined.vertex;
-    joined.shape = LightShape::rectangle;
-    const double size = glm::length(joined.edge1) * glm::length(joined.edge2);
-    if (std::abs(glm::dot(joined.edge1, joined.edge2)) > kTolerance * size) continue;
-    const auto is_corner_of_b = [&](const glm::dvec3& point) {
-      return std::any_of(std::begin(corners_b), std::end(corners_b), [&](const glm::dvec3& corner) {
-        return glm::length(corner - point) <= kTolerance * std::sqrt(size);
-      });
-    };
-    if (is_corner_of_b(joined.vertex + joined.edge1) && is_corner_of_b(joined.vertex + joined.edge2) &&
-        is_corner_of_b(joined.vertex + joined.edge1 + joined.edge2)) {
-      joined.triangles.insert(joined.triangles.end(), b.triangles.begin(), b.triangles.end());
-      return joined;
-    }
-  }
-  return {};
-}
-
-std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<std::int32_t>& faces) {
-  const MeanEmission emission(scene);
-  std::vector<Emitter> emitters;
-  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-    const Triangle& triangle = scene.triangles[i];
-    const Emitter emitter{triangle.vertex[0],
-                          triangle.vertex[1] - triangle.vertex[0],
-                          triangle.vertex[2] - triangle.vertex[0],
-                          LightShape::triangle,
-                          emission.of_triangle(i),
-                          triangle.material,
-                          faces[i],
-                          {i}};
-    if (power(emitter) > 0) emitters.push_back(emitter);
-  }
-  return emitters;
-}
-
-/// Replaces two triangles that follow each other by the rectangle that they form.
-std::vector<Emitter> join_rectangles(const std::vector<Emitter>& triangles) {
-  std::vector<Emitter> emitters;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    std::optional<Emitter> joined;
-    if (i + 1 < triangles.size()) joined = join(triangles[i], triangles[i + 1]);
-    emitters.push_back(joined.value_or(triangles[i]));
-    if (joined) ++i;
-  }
-  return emitters;
-}
-
-Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
-                   path_tracer::LightSampling sampling) {
-  std::vector<Emitter> emitters = find_emitters(scene, faces);
-  if (sampling == path_tracer::LightSampling::solid_angle) emitters = join_rectangles(emitters);
-  double total_power = 0;
-  for (const Emitter& emitter : emitters) total_power += power(emitter);
-  if (!(total_power > 0) && scene.environment.is_lit()) return {};
-  if (!(total_power > 0))
-    throw InputError(scene.name + ": no triangle emits light; a material with Ke above 0 is needed");
-
-  Lights lights;
-  double power_so_far = 0;
-  for (const Emitter& emitter : emitters) {
-    const double pdf = power(emitter) / total_power / area(emitter);
-    LightRecord record;
-    record.vertex = to_record(emitter.vertex);
-    record.edge1 = to_record(emitter.edge1);
-    record.edge2 = to_record(emitter.edge2);
-    record.normal = to_record(glm::normalize(glm::cross(emitter.edge1, emitter.edge2)));
-    record.inverse_pdf = 1.0 / pdf;
-    record.face = emitter.face;
-    record.shape = static_cast<std::int32_t>(emitter.shape);
-    lights.records.push_back(record);
-    lights.triangles.push_back(emitter.triangles);
-    power_so_far += power(emitter);
-    lights.cdf.push_back(power_so_far / total_power);
-  }
-  return lights;
 }
 
 template <class Record>
@@ -263,12 +137,13 @@ bool shares_plane(const SceneLayers& layers, const std::vector<std::size_t>& of_
 
 /// Writes, behind the triangles, a run of records for each light: all triangles of the light's face, or of
 /// the light itself where they share a plane. A shadow ray that hits one of them can stop at any nearer hit.
-/// If there are too many triangles, the run holds records that no ray hits. Shadow rays to that light then
-/// seem to miss it and search for the nearest hit as segments do.
+/// If there are too many triangles or none, the run holds records that no ray hits. Shadow rays to that light
+/// then seem to miss it and search for the nearest hit as segments do.
 void put_light_runs(MonoImage& image, const Triangles& all, const Lights& lights) {
   const std::vector<std::int32_t>& faces = all.faces;
   std::unordered_map<std::int32_t, std::vector<std::size_t>> of_face;
-  for (const LightRecord& light : lights.records) of_face[light.face];
+  for (const LightRecord& light : lights.records)
+    if (light.face >= 0) of_face[light.face];
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const auto found = of_face.find(faces[i]);
     if (found != of_face.end() && found->second.size() <= path_tracer::kLightRun) found->second.push_back(i);
@@ -277,7 +152,7 @@ void put_light_runs(MonoImage& image, const Triangles& all, const Lights& lights
   for (std::size_t light = 0; light < lights.records.size(); ++light) {
     const std::vector<std::size_t>& own = lights.triangles[light];
     const std::vector<std::size_t>& triangles =
-        shares_plane(all.layers, own) ? own : of_face[lights.records[light].face];
+        own.empty() || shares_plane(all.layers, own) ? own : of_face[lights.records[light].face];
     const std::size_t in_run = triangles.size() <= path_tracer::kLightRun ? triangles.size() : 0;
     for (std::size_t i = 0; i < path_tracer::kLightRun; ++i, ++place) {
       if (i < in_run) {
@@ -390,6 +265,20 @@ void put_shading_kinds(MonoImage& image, const Scene& scene, path_tracer::Shadin
              path_tracer::ShadingKindRecord{kinds[std::size_t(scene.triangles[i].material)]});
 }
 
+/// Texels of the environment's image, and suns.
+void put_outside(MonoImage& image, const Environment& environment, const Lights& lights) {
+  put(image, image.layout.suns, lights.suns.data(), lights.suns.size());
+  if (lights.environment_texels.empty()) return;
+  path_tracer::EnvironmentImage& of_layout = image.layout.environment_image;
+  of_layout.x_axis = to_record(environment.rotation[0]);
+  of_layout.y_axis = to_record(environment.rotation[1]);
+  of_layout.z_axis = to_record(environment.rotation[2]);
+  of_layout.width = environment.image->width;
+  of_layout.height = environment.image->height;
+  put(image, cn::MonoPointer<path_tracer::EnvironmentTexel>{of_layout.texels},
+      lights.environment_texels.data(), lights.environment_texels.size());
+}
+
 }  // namespace
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options) {
@@ -405,8 +294,11 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   path_tracer::SceneCounts counts;
   counts.triangles = static_cast<int>(scene.triangles.size());
   counts.lights = static_cast<int>(lights.records.size());
+  counts.light_classes = static_cast<int>(lights.classes.size());
   counts.tree_slots = static_cast<int>(tree.slots);
   counts.texture_bytes = textures.bytes();
+  counts.environment_texels = lights.environment_texels.size();
+  counts.suns = static_cast<int>(lights.suns.size());
   counts.has_layers = triangles.layers.layers().any;
   MonoImage image;
   image.layout = path_tracer::make_layout(counts, num_pes, config);
@@ -425,6 +317,8 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   put_shading_kinds(image, scene, config.shading);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
+  put_outside(image, scene.environment, lights);
+  put(image, image.layout.light_classes, lights.classes.data(), lights.classes.size());
   if (config.uses_tree())
     std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());
   return image;

@@ -63,6 +63,24 @@ void add_every_feature(path_tracer::Features& features) {
   features.normals = true;
   for (bool& uses : features.textures.uses) uses = true;
   features.textures.roughness_with_metallic = false;
+  if (!features.lights.any()) return;  // there is none to aim at
+  features.lights.points = true;
+  features.lights.distant = true;
+}
+
+path_tracer::LightKinds light_kinds(const Scene& scene) {
+  const MeanEmission emission(scene);
+  path_tracer::LightKinds kinds;
+  kinds.surfaces = std::any_of(scene.triangles.begin(), scene.triangles.end(), [&](const Triangle& triangle) {
+    return emission.of_material(triangle.material) != glm::dvec3(0.0);
+  });
+  for (const Light& light : scene.lights) {
+    if (light.intensity == glm::dvec3(0.0)) continue;
+    const bool is_near = light.kind == LightKind::point || light.kind == LightKind::spot;
+    (is_near ? kinds.points : kinds.distant) = true;
+  }
+  kinds.environment = scene.environment.shows_image();
+  return kinds;
 }
 
 }  // namespace
@@ -81,15 +99,13 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
       features.textures.has(path_tracer::TextureSlot::roughness) &&
       features.textures.has(path_tracer::TextureSlot::metallic) &&
       std::all_of(scene.materials.begin(), scene.materials.end(), shows_roughness_with_metallic);
-  const MeanEmission emission(scene);
-  features.lights = std::any_of(
-      scene.triangles.begin(), scene.triangles.end(),
-      [&](const Triangle& triangle) { return emission.of_material(triangle.material) != glm::dvec3(0.0); });
+  features.lights = light_kinds(scene);
   features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   if (config.built_for == path_tracer::BuiltFor::anything) add_every_feature(features);
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();
-  features.multiple_importance = config.program != path_tracer::Program::segments && features.lights &&
+  features.multiple_importance = config.program != path_tracer::Program::segments &&
+                                 features.lights.can_be_hit() &&
                                  (config.estimator == path_tracer::Estimator::mis ||
                                   (config.estimator == path_tracer::Estimator::per_lobe && has_shared));
   if (config.bins_hits()) {

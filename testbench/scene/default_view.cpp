@@ -41,7 +41,7 @@ Camera framing_camera(const Scene& scene) {
 }
 
 bool has_light(const Scene& scene) {
-  if (scene.environment.is_lit()) return true;
+  if (scene.environment.is_lit() || !scene.lights.empty()) return true;
   return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&scene](const Triangle& triangle) {
     return scene.materials[static_cast<std::size_t>(triangle.material)].emission != glm::dvec3(0.0);
   });

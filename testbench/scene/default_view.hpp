@@ -8,7 +8,7 @@ namespace testbench {
 /// right and above (+y is up), with a vertical field of view of 40 degrees on a square film.
 Camera framing_camera(const Scene& scene);
 
-/// Whether a triangle of the scene emits.
+/// Whether the scene has light: a triangle that emits, an environment or a light without area.
 bool has_light(const Scene& scene);
 
 /// Adds a light for scenes that have none: a square, 26 degrees above the line from the scene's centre to the

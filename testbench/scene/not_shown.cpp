@@ -40,8 +40,6 @@ void note_what_is_not_shown(Scene& scene, const std::string& file) {
       times += is_used[i] && kind.has(scene.materials[i]);
     scene.notes.add(kind.text, file, times);
   }
-  scene.notes.add("the environment's image is left out", file, scene.environment.image ? 1 : 0);
-  scene.notes.add("a light without area is left out", file, scene.lights.size());
 }
 
 }  // namespace testbench

@@ -200,9 +200,9 @@ TEST_F(TexturedRenders, HalfALightIsALightOfHalfTheSize) {
 TEST_F(TexturedRenders, BlackLightsAreNone) {
   Scene scene = test_support::textured_squares({8, 6}, true);
   const path_tracer::ProgramConfig config;
-  EXPECT_TRUE(testbench::features_of(scene, config).lights);
+  EXPECT_TRUE(testbench::features_of(scene, config).lights.any());
   scene.textures[1].image.texels.assign(scene.textures[1].image.texels.size(), 0);
-  EXPECT_FALSE(testbench::features_of(scene, config).lights);
+  EXPECT_FALSE(testbench::features_of(scene, config).lights.any());
   const RenderOptions options = options_for(Program::full, Traversal::refill, 1);
   EXPECT_EQ(testbench::render_natively(scene, options).counts.shadow_rays, 0u);
 }

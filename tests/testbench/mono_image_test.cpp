@@ -241,15 +241,26 @@ TEST(MonoImage, TrianglesThatAreNoHalvesStayApart) {
   EXPECT_EQ(make_mono_image(two_colours, 96, config).layout.light_count, 2);
 }
 
+/// The cdf is that of the classes, and a light's density is that of its class in equal parts.
 TEST(MonoImage, CdfOfManyLightsAscendsToOne) {
   const MonoImage image = make_mono_image(test_support::triangle_soup(800, 5, {8, 8}), 96, {});
   ASSERT_EQ(image.layout.light_count, 100);
+  ASSERT_GE(image.layout.light_class_count, 1);
   double before = 0;
-  for (int i = 0; i < 100; ++i) {
+  int lights = 0;
+  for (int i = 0; i < image.layout.light_class_count; ++i) {
     const double now = record(image, image.layout.light_cdf, i);
     EXPECT_GT(now, before);
+    const auto of_class = record(image, image.layout.light_classes, i);
+    EXPECT_EQ(of_class.first, lights);
+    for (; lights < of_class.first + of_class.count; ++lights) {
+      const auto light = record(image, image.layout.lights, lights);
+      const double area = 0.5 * glm::length(glm::cross(vector(light.edge1), vector(light.edge2)));
+      EXPECT_NEAR(light.inverse_pdf, area * of_class.count / (now - before), 1e-9 * light.inverse_pdf);
+    }
     before = now;
   }
+  EXPECT_EQ(lights, 100);
   EXPECT_EQ(before, 1.0);
 }
 

@@ -3,6 +3,7 @@
 #include "firmware/path_tracer/kernels/kernels.hpp"
 
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
+#include "firmware/path_tracer/kernels/outside.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/shade.hpp"
 #include "firmware/path_tracer/kernels/textures.hpp"
@@ -110,11 +111,28 @@ mask is_light(const IlluminateArguments& arguments) {
   return arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face);
 }
 
+void illuminate_by_any(const IlluminateArguments& arguments) {
+  const vec3<poly<double>> none{0.0, 0.0, 0.0};
+  const LightWithoutTriangle other = light_without_triangle(arguments);
+  Rgb radiance = cn::select(other.sees, other.radiance, none);
+  if (arguments.lights.surfaces) {
+    const mask sees = (arguments.hit.get(&HitRecord::hit) != 0) & is_light(arguments);
+    radiance =
+        cn::select(sees, emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups), radiance);
+  }
+  arguments.direct_light.set(&DirectLightRecord::radiance,
+                             radiance * arguments.lighting.get(&LightingRecord::weight));
+}
+
 void illuminate(const IlluminateArguments& arguments) {
+  const vec3<poly<double>> none{0.0, 0.0, 0.0};
+  if (arguments.lights.without_triangles()) {
+    illuminate_by_any(arguments);
+    return;
+  }
   const mask sees = (arguments.hit.get(&HitRecord::hit) != 0) & is_light(arguments);
   const vec3<poly<double>> light = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups) *
                                    arguments.lighting.get(&LightingRecord::weight);
-  const vec3<poly<double>> none{0.0, 0.0, 0.0};
   arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
 }
 
@@ -184,9 +202,9 @@ void continue_path(const ContinuePathsArguments& arguments) {
 /// because the light is loaded together with the vertex.
 void choose_light(const ContinuePathsArguments& arguments) {
   const PolyPointer<PathRecord>& path = arguments.next_path;
-  const LightNumbers numbers = light_numbers(arguments.sampler, arguments.seed, path.get(&PathRecord::pixel),
-                                             path.get(&PathRecord::sample), path.get(&PathRecord::depth),
-                                             arguments.light_cdf, arguments.light_count);
+  const LightNumbers numbers =
+      light_numbers(arguments.sampler, arguments.seed, path.get(&PathRecord::pixel),
+                    path.get(&PathRecord::sample), path.get(&PathRecord::depth), arguments.light_table);
   path.set(&PathRecord::light_u, numbers.position.u);
   path.set(&PathRecord::light_v, numbers.position.v);
   arguments.light_place.write(place_of(arguments.lights, numbers.light, sizeof(LightRecord)));
@@ -198,7 +216,7 @@ void continue_paths(const ContinuePathsArguments& arguments) {
   const mask starts = ended & (number < arguments.remaining);
   cn::poly_if_any(starts, [&] { start_path(arguments, number); });
   cn::poly_if_any(!ended, [&] { continue_path(arguments); });
-  if (arguments.light_cdf != nullptr) choose_light(arguments);
+  if (arguments.light_table.cdf != nullptr) choose_light(arguments);
   cn::keep(starts | !ended, *arguments.live);
 }
 
@@ -296,6 +314,7 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<IntersectArguments, intersect>("intersect"),
       cn::kernel<ScatterArguments, scatter>("scatter"),
       cn::kernel<LookUpArguments, look_up>("look_up"),
+      cn::kernel<EnvironmentLookUpArguments, look_up_environment>("look_up_environment"),
       cn::kernel<ShadeArguments, shade>("shade"),
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),

@@ -6,6 +6,7 @@
 #include "firmware/path_tracer/prefilter/prefilter.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
 #include "firmware/path_tracer/records/tails.hpp"
+#include "firmware/path_tracer/sampling/sampler.hpp"
 
 /// The poly programs of the path tracer: their arguments and the table of entry points. Poly pointers point
 /// to SRAM, plain pointers to mono memory that the control unit reads, `LaneMask*` to conditions that a
@@ -60,6 +61,14 @@ struct LookUpArguments {
   LaneMask* needs = nullptr;  ///< PEs whose triangle has the texture
 };
 
+/// Intersection stage, after the first loads: the texel of the environment's image that a ray sees which hit
+/// nothing.
+struct EnvironmentLookUpArguments {
+  PolyPointer<HitRecord> hit;
+  EnvironmentImage image;
+  PolyPointer<EnvironmentLookUp> look_up;
+};
+
 /// ScatterArguments for scenes that are not plain (records/features.hpp).
 struct ShadeArguments : ScatterArguments {
   Features features;
@@ -67,6 +76,9 @@ struct ShadeArguments : ScatterArguments {
   Estimator estimator = Estimator::per_lobe;
   bool skips_absent_lobes = true;
   vec3<double> environment{};  ///< radiance from outside
+  EnvironmentImage image;
+  const SunRecord* suns = nullptr;
+  int sun_count = 0;
   PolyPointer<TextureLookUp> look_ups;
 };
 
@@ -76,6 +88,7 @@ struct IlluminateArguments {
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<LightingRecord> lighting;
   bool is_in_layers = false;
+  LightKinds lights;
   RecordSizes sizes{Features{}};
   PolyPointer<TextureLookUp> look_ups;
   PolyPointer<DirectLightRecord> direct_light;
@@ -112,8 +125,7 @@ struct ContinuePathsArguments {
   PolyField<std::int32_t> number;  ///< ascending numbers of the lanes whose path ended
   const LaneMask* ended = nullptr;
   const LaneMask* finished = nullptr;
-  const double* light_cdf = nullptr;  ///< nullptr without shadow rays
-  int light_count = 0;
+  LightTable light_table;  ///< without a cdf if there are no shadow rays
   MonoAddress lights = 0;
   Sampler sampler = Sampler::philox;
   std::uint64_t seed = 0;
@@ -201,6 +213,7 @@ struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
   cn::Kernel<ScatterArguments> scatter;
   cn::Kernel<LookUpArguments> look_up;
+  cn::Kernel<EnvironmentLookUpArguments> look_up_environment;
   cn::Kernel<ShadeArguments> shade;
   cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <limits>
-
 #include "firmware/path_tracer/kernels/kernels.hpp"
+#include "firmware/path_tracer/kernels/outside.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "firmware/path_tracer/materials/sample_bsdf.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
+#include "firmware/path_tracer/sampling/light_shapes.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
 
 /// What happens to a segment at the surface that it hit, in scenes that are not plain (records/features.hpp).
@@ -18,8 +18,6 @@
 /// point uniform in the lights' areas. The latter stands for the density that shadow rays have in fact, which
 /// is close to it for small or distant lights; near a large light it is lower, where hits do better.
 namespace path_tracer {
-
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A vertex of a path, as its next segment and its shadow ray need it.
 struct ShadedVertex {
@@ -96,13 +94,6 @@ inline mask is_diffuse(const Lobes& lobes, const Material& material) {
   return diffuse;
 }
 
-/// The power heuristic's weight of the first density, with exponent 2.
-/// @param first positive, may be infinite
-inline poly<double> power_heuristic(const poly<double>& first, const poly<double>& second) {
-  const poly<double> ratio = second / first;
-  return 1.0 / (1.0 + ratio * ratio);
-}
-
 /// Density by solid angle of a point uniform in the lights' areas.
 /// @param facing -cosine at the light * distance
 /// @param inverse_pdf by area
@@ -127,15 +118,43 @@ inline poly<double> weight_of_hit(const ShadeArguments& arguments, const Directi
   return cn::select(counts, power_heuristic(cn::select(counts, pdf, poly<double>(1.0)), other), none);
 }
 
+/// Takes, where the light has no triangle, the sample of its kind.
+inline void sample_other_shapes(const ShadeArguments& arguments, const ShadedVertex& vertex,
+                                ShapeSample& chosen) {
+  const PolyPointer<LightRecord>& light = arguments.light;
+  const LightKinds& lights = arguments.features.lights;
+  const Direction3& normal = vertex.bsdf.point.geometric_normal;
+  const poly<double> u = arguments.path.get(&PathRecord::light_u);
+  const poly<double> v = arguments.path.get(&PathRecord::light_v);
+  const poly<std::int32_t> shape = light.get(&LightRecord::shape);
+  const auto take_where = [&](LightShape wanted, const auto& sample) {
+    cn::poly_if_any(shape == static_cast<std::int32_t>(wanted), [&] { chosen = sample(); });
+  };
+  if (lights.points)
+    take_where(LightShape::point, [&] { return sample_point_light(light, vertex.position, normal); });
+  if (lights.distant)
+    take_where(LightShape::distant, [&] { return sample_distant_light(light, normal, u, v); });
+  if (lights.environment)
+    take_where(LightShape::environment,
+               [&] { return sample_environment(light, arguments.image, normal, u, v); });
+}
+
 /// Aims a shadow ray and records what it contributes if it reaches its light.
 inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, const mask& wants_light) {
   const PolyPointer<LightRecord>& light = arguments.light;
   const LightSurface light_surface{light.get(&LightRecord::vertex), light.get(&LightRecord::edge1),
                                    light.get(&LightRecord::edge2), light.get(&LightRecord::normal)};
   const Direction3& normal = vertex.bsdf.point.geometric_normal;
-  const LightSample sample = sample_light(
-      arguments.light_sampling, light_surface, light.get(&LightRecord::shape), vertex.position, normal,
-      arguments.path.get(&PathRecord::light_u), arguments.path.get(&PathRecord::light_v));
+  const LightKinds& lights = arguments.features.lights;
+  ShapeSample chosen{
+      lights.surfaces ? sample_light(arguments.light_sampling, light_surface, light.get(&LightRecord::shape),
+                                     vertex.position, normal, arguments.path.get(&PathRecord::light_u),
+                                     arguments.path.get(&PathRecord::light_v))
+                      : LightSample{{0.0, 0.0, 0.0}, 0.0},
+      {1.0, 1.0, 1.0},
+      0.0};
+  if (lights.without_triangles()) sample_other_shapes(arguments, vertex, chosen);
+  const LightSample& sample = chosen.sample;
   const mask facing = sample.weight > 0.0;
   const poly<double> inverse_pdf = light.get(&LightRecord::inverse_pdf);
   const poly<double> distance_squared = dot(sample.to_light, sample.to_light);
@@ -146,16 +165,21 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
   poly<double> scale =
       cn::select(facing, sample.weight * inverse_pdf / dot(to_light, normal), poly<double>(0.0));
   if (arguments.features.multiple_importance) {
-    const poly<double> here =
+    poly<double> here =
         light_pdf(distance_squared, distance, -dot(sample.to_light, light_surface.normal), inverse_pdf);
+    if (lights.without_triangles()) here = cn::select(light.get(&LightRecord::face) < 0, chosen.pdf, here);
     const poly<double> weight = power_heuristic(cn::select(facing, here, poly<double>(1.0)), value.pdf);
     scale = scale * cn::select(vertex.shares_light, weight, poly<double>(1.0));
   }
-  const Rgb contribution = dimmed(arguments, value.value * scale, vertex.arrived);
+  Rgb contribution = dimmed(arguments, value.value * scale, vertex.arrived);
+  if (lights.without_triangles()) contribution = contribution * chosen.colour;
   arguments.shadow_ray.set(&RayRecord::origin, vertex.position);
   arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
   arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
-  arguments.shadow_ray.set(&RayRecord::light_face, light.get(&LightRecord::face));
+  const poly<std::int32_t> light_face = light.get(&LightRecord::face);
+  arguments.shadow_ray.set(&RayRecord::light_face, lights.without_triangles()
+                                                       ? cn::max(light_face, poly<std::int32_t>(kNoFace))
+                                                       : light_face);
   arguments.lighting.set(&LightingRecord::weight, contribution);
   arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
   if (arguments.is_in_layers)
@@ -271,9 +295,7 @@ inline void shade(const ShadeArguments& arguments) {
   const Rgb emission = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups) *
                        weight_of_hit(arguments, normal);
   const Rgb none{0.0, 0.0, 0.0};
-  const Rgb outside = arguments.features.environment
-                          ? Rgb{arguments.environment.x, arguments.environment.y, arguments.environment.z}
-                          : none;
+  const Rgb outside = radiance_from_outside(arguments);
   const Rgb inside = cn::select(front, dimmed(arguments, emission, arrived), none);
   arguments.scatter.set(&ScatterRecord::radiance, cn::select(hit, inside, outside));
 

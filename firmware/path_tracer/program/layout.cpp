@@ -66,6 +66,7 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.sizes = RecordSizes(config.features);
   layout.triangle_count = scene.triangles;
   layout.light_count = scene.lights;
+  layout.light_class_count = scene.light_classes;
   layout.tree_slots = scene.tree_slots;
   layout.camera = memory.take<CameraRecord>("camera", 1);
   // All leaf loads have the same size, so the last leaf's load reaches beyond the last triangle.
@@ -80,12 +81,20 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.surfaces =
       memory.take<SurfaceRecord>("surfaces", std::uint64_t(scene.triangles), layout.sizes.surface);
   layout.lights = memory.take<LightRecord>("lights", std::uint64_t(scene.lights));
-  layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(scene.lights));
+  const int cdf_entries = scene.light_classes > 0 ? scene.light_classes : scene.lights;
+  layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(cdf_entries));
+  if (scene.light_classes > 0)
+    layout.light_classes = memory.take<LightClass>("light classes", std::uint64_t(scene.light_classes));
   if (config.uses_tree())
     layout.nodes = memory.take<std::uint64_t>(
         "nodes", std::uint64_t(scene.tree_slots) * std::uint64_t(tree.layout.node_bytes()) / 8);
   if (scene.texture_bytes > 0)
     layout.textures = memory.take<std::uint64_t>("textures", (scene.texture_bytes + 7) / 8);
+  if (scene.environment_texels > 0)
+    layout.environment_image.texels =
+        memory.take<EnvironmentTexel>("environment", scene.environment_texels).address;
+  layout.sun_count = scene.suns;
+  if (scene.suns > 0) layout.suns = memory.take<SunRecord>("suns", std::uint64_t(scene.suns));
   layout.scene_bytes = memory.used_bytes();
   if (config.uses_tree()) {
     layout.ray_queue = memory.take<QueuedRay>("ray queue", slots);

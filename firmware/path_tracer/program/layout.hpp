@@ -13,9 +13,12 @@ namespace path_tracer {
 struct SceneCounts {
   int triangles = 0;
   int lights = 0;
-  int tree_slots = 0;  ///< nodes; 0 without a tree
+  int light_classes = 0;  ///< 0 if each light has a probability of its own
+  int tree_slots = 0;     ///< nodes; 0 without a tree
   bool has_layers = false;
   std::uint64_t texture_bytes = 0;
+  std::uint64_t environment_texels = 0;
+  int suns = 0;
 };
 
 /// Addresses in mono memory.
@@ -25,19 +28,24 @@ struct Layout {
   cn::MonoPointer<TriangleRecord> triangles;  ///< in a layered scene of LayeredTriangleRecords
   cn::MonoPointer<SurfaceRecord> surfaces;
   cn::MonoPointer<LightRecord> lights;
-  cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i
+  cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i, or of classes 0..i
+  cn::MonoPointer<LightClass> light_classes;
   cn::MonoPointer<std::uint64_t> nodes;
   cn::MonoPointer<std::uint64_t> textures;  ///< footprints of texels (records/tails.hpp)
   int triangle_count =
       0;  ///< with a tree, in order of leaves; behind them lie kLightRun triangles for each light
   int light_count = 0;
+  int light_class_count = 0;  ///< 0 if each light has a probability of its own
   int tree_slots = 0;
   int treelet_pool_blocks = 0;
   Features features;  ///< of the scene; the firmware is built for them
   RecordSizes sizes{
       Features{}};             ///< of records with tails: surfaces, intersection_bin, scatter_bin, path_bin
   vec3<double> environment{};  ///< radiance that arrives from outside the scene
-  double reach = 0;            ///< no ray starts farther from a vertex (triangle_record.hpp)
+  EnvironmentImage environment_image;
+  cn::MonoPointer<SunRecord> suns;
+  int sun_count = 0;
+  double reach = 0;  ///< no ray starts farther from a vertex (triangle_record.hpp)
   Layers layers;
 
   // Bins: one record for each slot, slot_vertices for `vertices`.

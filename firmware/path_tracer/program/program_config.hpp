@@ -101,7 +101,7 @@ struct ProgramConfig {
   bool uses_tree() const { return traversal != Traversal::brute_force; }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
-  bool casts_shadow_rays() const { return program != Program::segments && features.lights; }
+  bool casts_shadow_rays() const { return program != Program::segments && features.lights.any(); }
   bool buffers_loads() const { return buffer_loads && n > 0; }
   bool buffers_saves() const { return buffer_saves && n > 0; }
   int load_buffers() const { return buffers_loads() ? n + 1 : 1; }

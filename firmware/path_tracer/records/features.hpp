@@ -61,10 +61,23 @@ struct TextureSlots {
 
 inline constexpr Lobes kEveryLobe{true, true, true, true, true, true, true, true, true};
 
+/// Lights that shadow rays are aimed at.
+struct LightKinds {
+  bool surfaces = true;      ///< triangles that emit
+  bool points = false;       ///< points and spots
+  bool distant = false;      ///< suns and parallel light
+  bool environment = false;  ///< the environment's image
+
+  constexpr bool without_triangles() const { return points || distant || environment; }
+  constexpr bool any() const { return surfaces || without_triangles(); }
+  /// Lights that segments can find as well.
+  constexpr bool can_be_hit() const { return surfaces || environment; }
+};
+
 struct Features {
   Lobes lobes{true};
-  bool lights = true;        ///< triangles that emit, to aim shadow rays at
-  bool environment = false;  ///< light that arrives from outside
+  LightKinds lights;
+  bool environment = false;  ///< light of one colour that arrives from outside
   bool normals = false;      ///< that vary over triangles
   TextureSlots textures;
   /// Kinds of materials that are shaded apart (Shading::material_bins); 1 where nothing tells them apart.
@@ -72,10 +85,14 @@ struct Features {
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 
+  /// Whether hits and misses are looked up in images.
+  constexpr bool looks_up() const { return textures.any() || lights.environment; }
+
   /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
   /// alone.
   constexpr bool plain() const {
-    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !multiple_importance;
+    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !multiple_importance &&
+           !lights.without_triangles();
   }
 };
 

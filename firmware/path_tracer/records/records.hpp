@@ -12,6 +12,9 @@ using cn::vec3;
 
 inline constexpr std::int32_t kNoFace = -1;
 inline constexpr std::int32_t kNoLight = -1;
+/// Faces of lights without triangles; kNoFace of lights at a point.
+inline constexpr std::int32_t kDistantFace = -2;
+inline constexpr std::int32_t kEnvironmentFace = -3;
 
 /// The camera turns a film position, x and y in pixels, into a ray. A pinhole camera's rays start at
 /// `position` and run along direction + right * x + down * y. An orthographic camera's start at position +
@@ -79,19 +82,29 @@ struct SurfaceRecord {
 };
 
 enum class LightShape : std::int32_t {
-  triangle,   ///< of edge1 and edge2
-  rectangle,  ///< the parallelogram of edge1 and edge2, which are orthogonal
+  triangle,     ///< of edge1 and edge2
+  rectangle,    ///< the parallelogram of edge1 and edge2, which are orthogonal
+  point,        ///< light from a point, all around or in a cone
+  distant,      ///< light from infinitely far away: parallel, or from a disk in the sky
+  environment,  ///< a part of the environment's image
 };
 
-/// A triangle or rectangle that emits from its front, where edge1 x edge2 points.
+/// A light: a triangle or rectangle that emits from its front, where edge1 x edge2 points. Lights of other
+/// shapes keep in the same fields what light_shapes.hpp says.
 struct LightRecord {
   vec3<double> vertex{};
   vec3<double> edge1{};
   vec3<double> edge2{};
   vec3<double> normal{};
-  double inverse_pdf = 0;  ///< area / probability of this light
-  std::int32_t face = kNoFace;
+  double inverse_pdf = 0;       ///< area / probability of this light
+  std::int32_t face = kNoFace;  ///< or kDistantFace or kEnvironmentFace
   std::int32_t shape = static_cast<std::int32_t>(LightShape::triangle);
+};
+
+/// Lights that are chosen equally often, where there are many; they stand side by side.
+struct LightClass {
+  std::int32_t first = 0;
+  std::int32_t count = 0;
 };
 
 /// Record of the ray bin. With direct lighting, a slot's ray is the next segment of its path or the shadow
@@ -129,8 +142,8 @@ struct ScatterRecord {
 
 /// Kept while a shadow ray is under way: what its light contributes.
 struct LightingRecord {
-  vec3<double> weight{};              ///< factor for the radiance of the light's face
-  std::int32_t light_face = kNoFace;  ///< what the shadow ray must hit
+  vec3<double> weight{};  ///< factor for the radiance of the light's face, or of what stands for it
+  std::int32_t light_face = kNoFace;  ///< what the shadow ray must hit: LightRecord::face
   std::int32_t light = kNoLight;      ///< number of the light: what it must hit in a layered scene
 };
 

@@ -2,6 +2,7 @@
 
 #include "firmware/cn/chip/mono_memory.hpp"
 #include "firmware/path_tracer/records/features.hpp"
+#include "firmware/path_tracer/records/outside.hpp"
 #include "firmware/path_tracer/records/records.hpp"
 
 /// Records that follow others where the scene has use for them. A record and its tail are transferred as one.
@@ -146,6 +147,7 @@ struct RecordSizes {
   /// slot's place in them.
   int look_ups = 0;
   int look_up[kTextureSlots] = {};
+  int environment = kNone;  ///< place of the EnvironmentLookUp in them
 
   explicit RecordSizes(const Features& features) {
     const auto append = [this](bool present, std::size_t bytes) {
@@ -170,6 +172,8 @@ struct RecordSizes {
       look_up[slot] = look_ups;
       if (looks_up) look_ups += int{sizeof(TextureLookUp)} + footprint_bytes(TextureSlot(slot));
     }
+    environment = look_ups;
+    if (features.lights.environment) look_ups += int{sizeof(EnvironmentLookUp)};
     aim = append(features.multiple_importance, sizeof(AimRecord));
   }
 };

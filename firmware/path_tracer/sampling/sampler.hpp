@@ -46,18 +46,29 @@ struct LightNumbers {
   UniformPair position;
 };
 
-/// @param cdf entry i: probability of lights 0..i
+/// How lights are chosen: each by its probability, or where there are many by classes.
+struct LightTable {
+  const double* cdf = nullptr;  ///< entry i: probability of lights, or of classes, 0..i
+  const LightClass* classes = nullptr;
+  int count = 0;  ///< entries of the cdf
+};
+
 inline LightNumbers light_numbers(Sampler sampler, std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
                                   const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
-                                  const double* cdf, int count) {
+                                  const LightTable& table) {
   if (sampler == Sampler::sobol) {
     // The first number chooses the light, and its unused part the position: both are stratified together.
     const UniformPair pair = sobol_pair(sobol_point(seed, pixel, sample, depth, Purpose::light));
-    const CdfEntry chosen = sample_cdf_stretched(cdf, count, pair.u);
+    const CdfEntry chosen = table.classes == nullptr
+                                ? sample_cdf_stretched(table.cdf, table.count, pair.u)
+                                : sample_light_class(table.cdf, table.classes, table.count, pair.u);
     return {chosen.entry, {chosen.rest, pair.v}};
   }
   const Uniform4 random = uniform4(seed, pixel, sample, depth, Purpose::light);
-  return {sample_cdf(cdf, count, random.value[2]), {random.value[0], random.value[1]}};
+  const cn::poly<double>& u = random.value[2];
+  return {table.classes == nullptr ? sample_cdf(table.cdf, table.count, u)
+                                   : sample_light_class(table.cdf, table.classes, table.count, u).entry,
+          {random.value[0], random.value[1]}};
 }
 
 }  // namespace path_tracer

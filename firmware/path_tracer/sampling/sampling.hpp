@@ -74,4 +74,28 @@ inline CdfEntry sample_cdf_stretched(const double* cdf, int count, const poly<do
   return {chosen, cn::min((u - low) / (high - low), poly<double>(kBelowOne))};
 }
 
+/// A class by its probability, then a light of the class, with the unused part of u. The control unit goes
+/// through the classes, few however many lights there are.
+/// @param cdf entry i: probability of classes 0..i
+inline CdfEntry sample_light_class(const double* cdf, const LightClass* classes, int count,
+                                   const poly<double>& u) {
+  poly<double> low = 0.0;
+  poly<double> high = cdf[0];
+  poly<std::int32_t> first = classes[0].first;
+  poly<double> lights = double(classes[0].count);
+  for (int i = 0; i + 1 < count; ++i) {
+    cn::issue(cn::InstructionClass::mono, 6);
+    cn::poly_if(u >= cdf[i], [&] {
+      low = cdf[i];
+      high = cdf[i + 1];
+      first = classes[i + 1].first;
+      lights = double(classes[i + 1].count);
+    });
+  }
+  const poly<double> place = (u - low) / (high - low) * lights;
+  const poly<std::int32_t> light = cn::convert<std::int32_t>(cn::min(place, lights - 0.5));
+  constexpr double kBelowOne = 1.0 - 0x1p-53;
+  return {first + light, cn::min(place - cn::convert<double>(light), poly<double>(kBelowOne))};
+}
+
 }  // namespace path_tracer

@@ -212,9 +212,9 @@ void BinnedIntersectionStage::prepare(std::uint64_t step, int group) {
     context_.machine.run(context_.kernels.traversal().recall,
                          RecallArguments{hits.surface_place, &hits.hit_something}, hits.live);
   load_records(step, group);
-  const TextureSlots& textures = context_.config.features.textures;
-  if (has_shadow_rays(group) ? textures.has(TextureSlot::emission) : textures.any())
-    load_all_texels(step, group);
+  const Features& features = context_.config.features;
+  const bool lights_look_up = features.lights.environment || features.textures.has(TextureSlot::emission);
+  if (has_shadow_rays(group) ? lights_look_up : features.looks_up()) load_all_texels(step, group);
 }
 
 void BinnedIntersectionStage::locate_saves(std::uint64_t step, int group) {

@@ -102,6 +102,22 @@ void IntersectionStage::load_all_texels(std::uint64_t step, int block) {
   for (int slot = 0; slot < kTextureSlots; ++slot)
     if (context_.config.features.textures.looks_up(TextureSlot(slot)))
       load_texels(step, block, TextureSlot(slot));
+  if (context_.config.features.lights.environment) load_environment(step, block);
+}
+
+void IntersectionStage::load_environment(std::uint64_t step, int block) {
+  const Loads from = loads(step);
+  const Bins::Block& bin = rays(block);
+  const LaneMask misses = bin.live.without(bin.hit_something);
+  EnvironmentLookUpArguments arguments;
+  arguments.hit = from.hit;
+  arguments.image = context_.layout.environment_image;
+  arguments.look_up =
+      PolyPointer<EnvironmentLookUp>(from.look_ups.span().offset_bytes + context_.layout.sizes.environment);
+  context_.machine.run(context_.kernels.look_up_environment, arguments, misses);
+  context_.loads.copy_m2p(
+      step, block_of_slots(block), arguments.look_up.part(&EnvironmentLookUp::texel).span(),
+      context_.machine.places_in(arguments.look_up.field(&EnvironmentLookUp::place)), misses);
 }
 
 void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot slot) {
@@ -173,6 +189,10 @@ void IntersectionStage::shade(const Loads& from, const ScatterArguments& argumen
   shading.estimator = context_.config.estimator;
   shading.skips_absent_lobes = context_.config.shading != Shading::every_lobe;
   shading.environment = context_.layout.environment;
+  shading.image = context_.layout.environment_image;
+  shading.sun_count = context_.layout.sun_count;
+  if (shading.sun_count > 0)
+    shading.suns = context_.machine.read_mono(context_.layout.suns, std::size_t(shading.sun_count));
   shading.look_ups = from.look_ups;
   context_.machine.run(context_.kernels.shade, shading, segments);
 }
@@ -185,6 +205,7 @@ void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {
   arguments.surface = from.surface;
   arguments.lighting = from.lighting;
   arguments.is_in_layers = context_.layout.layers.any;
+  arguments.lights = context_.config.features.lights;
   arguments.sizes = context_.layout.sizes;
   arguments.look_ups = from.look_ups;
   arguments.direct_light = to.direct_light;

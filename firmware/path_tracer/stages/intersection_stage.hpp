@@ -19,7 +19,7 @@ class IntersectionStage : public Stage {
 
   const char* name() const override { return "intersection stage"; }
   void load(std::uint64_t step, int block) override;
-  bool prepares() const override { return context_.config.features.textures.any(); }
+  bool prepares() const override { return context_.config.features.looks_up(); }
   /// Surfaces with their tails take too much SRAM for buffers of their own.
   bool loads_early() const override { return false; }
   /// Loads texels.
@@ -71,6 +71,7 @@ class IntersectionStage : public Stage {
   }
   void load_surfaces(std::uint64_t step, int block);
   void load_texels(std::uint64_t step, int block, TextureSlot slot);
+  void load_environment(std::uint64_t step, int block);
   void shade(const Loads& from, const ScatterArguments& arguments, const LaneMask& segments);
 
   RayStore& ray_store_;

@@ -113,6 +113,16 @@ void PathStage::list_finished(std::uint64_t step) {
   finished_count_ += count;
 }
 
+LightTable PathStage::light_table() const {
+  const Layout& layout = context_.layout;
+  LightTable table;
+  const bool has_classes = layout.light_class_count > 0;
+  table.count = has_classes ? layout.light_class_count : layout.light_count;
+  table.cdf = context_.machine.read_mono(layout.light_cdf, std::size_t(table.count));
+  if (has_classes) table.classes = context_.machine.read_mono(layout.light_classes, std::size_t(table.count));
+  return table;
+}
+
 void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
@@ -128,9 +138,7 @@ void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   arguments.finished = &finished_;
   arguments.camera = context_.machine.read_mono(context_.layout.camera);
   if (context_.config.casts_shadow_rays()) {
-    arguments.light_count = context_.layout.light_count;
-    arguments.light_cdf =
-        context_.machine.read_mono(context_.layout.light_cdf, std::size_t(arguments.light_count));
+    arguments.light_table = light_table();
     arguments.lights = context_.layout.lights.address;
     arguments.light_place = bin.light_place;
   }

@@ -11,11 +11,13 @@
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/barycentric.hpp"
+#include "testbench/mono_image/coverage.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
 #include "testbench/mono_image/shading_kinds.hpp"
+#include "testbench/mono_image/tangents.hpp"
 #include "testbench/mono_image/texture_images.hpp"
 #include "testbench/scene/film_ray.hpp"
 #include "testbench/scene/normalise.hpp"
@@ -336,6 +338,7 @@ path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
 
 void put_material(MonoImage& image, std::size_t triangle, const Material& material) {
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
+  put_tail(image, triangle, sizes.coverage, coverage_record(material));
   put_tail(image, triangle, sizes.material, material_record(material));
   path_tracer::AbsorptionRecord absorption;
   if (!material.is_thin)
@@ -374,6 +377,7 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
     std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
     put_material(image, i, material);
     if (has_normals) put_tail(image, i, sizes.normal, normal_record(triangles.scene, i));
+    put_tail(image, i, sizes.tangent, tangent_record(triangles.scene, i));
     path_tracer::AimRecord aim{std::numeric_limits<double>::infinity()};
     if (light_of[i] != path_tracer::kNoLight)
       aim.inverse_pdf = lights.records[std::size_t(light_of[i])].inverse_pdf;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/path_tracer/materials/material.hpp"
+#include "testbench/mono_image/coverage.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/shading_kinds.hpp"
 #include "testbench/mono_image/texture_images.hpp"
@@ -54,6 +55,15 @@ void add_textures(const Material& material, const path_tracer::Lobes& lobes,
   add(path_tracer::TextureSlot::metallic, lobes.specular());
   add(path_tracer::TextureSlot::roughness, lobes.specular());
   add(path_tracer::TextureSlot::transmission, lobes.transmissive());
+  add(path_tracer::TextureSlot::normal, true);
+}
+
+void add_coverage(const Scene& scene, const Material& material, path_tracer::Features& features) {
+  if (!lets_rays_through(scene, material)) return;
+  features.coverage = true;
+  if (material.alpha_mode == AlphaMode::blend) features.blended_coverage = true;
+  if (shown_texture(material, path_tracer::TextureSlot::alpha))
+    features.textures.uses[int(path_tracer::TextureSlot::alpha)] = true;
 }
 
 /// What a program that renders anything has, beyond what this scene's has.
@@ -77,6 +87,8 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
     features.lobes.diffuse = true;
   for (std::size_t i = 0; i < is_used.size(); ++i)
     if (is_used[i]) add_textures(scene.materials[i], features.lobes, features.textures);
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) add_coverage(scene, scene.materials[i], features);
   features.textures.roughness_with_metallic =
       features.textures.has(path_tracer::TextureSlot::roughness) &&
       features.textures.has(path_tracer::TextureSlot::metallic) &&

@@ -12,12 +12,6 @@ struct NotShown {
 
 /// What materials have and the firmware does not render.
 constexpr NotShown kNotShown[] = {
-    {"a texture of a material's normal or alpha is left out",
-     [](const Material& material) { return material.textures.normal || material.textures.alpha; }},
-    {"a material of partial coverage (alpha) is shown as opaque",
-     [](const Material& material) {
-       return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0;
-     }},
     {"a colour of a dielectric's reflection is shown as its strongest channel in grey",
      [](const Material& material) {
        const glm::dvec3& colour = material.specular_colour;

@@ -33,11 +33,18 @@ struct Lobes {
 };
 
 /// What textures of materials multiply; a scene's textures are looked up for each of these that a material
-/// uses. Colours have sRGB texels of three channels, the others have one linear channel.
-enum class TextureSlot { reflectance, emission, metallic, roughness, transmission };
-inline constexpr int kTextureSlots = 5;
+/// uses. Colours have sRGB texels of three channels, a normal has three linear ones, the others have one.
+enum class TextureSlot { reflectance, emission, metallic, roughness, transmission, alpha, normal };
+inline constexpr int kTextureSlots = 7;
 constexpr bool is_colour(TextureSlot slot) {
   return slot == TextureSlot::reflectance || slot == TextureSlot::emission;
+}
+constexpr bool has_three_channels(TextureSlot slot) {
+  return is_colour(slot) || slot == TextureSlot::normal;
+}
+/// Whether shadow rays look the slot up, at what they hit.
+constexpr bool counts_for_shadow_rays(TextureSlot slot) {
+  return slot == TextureSlot::emission || slot == TextureSlot::alpha;
 }
 
 /// The slots that materials of a scene have textures for.
@@ -52,6 +59,7 @@ struct TextureSlots {
   constexpr bool looks_up(TextureSlot slot) const {
     return has(slot) && !(slot == TextureSlot::roughness && roughness_with_metallic);
   }
+  constexpr bool any_for_shadow_rays() const { return has(TextureSlot::emission) || has(TextureSlot::alpha); }
   constexpr bool any() const {
     bool any_slot = false;
     for (const bool uses_slot : uses) any_slot = any_slot || uses_slot;
@@ -69,13 +77,19 @@ struct Features {
   TextureSlots textures;
   /// Kinds of materials that are shaded apart (Shading::material_bins); 1 where nothing tells them apart.
   int shading_kinds = 1;
+  bool coverage = false;          ///< surfaces that let rays through, at least in places
+  bool blended_coverage = false;  ///< some of them by chance
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
+
+  /// Whether normals of shading differ from those of triangles.
+  constexpr bool shading_normals() const { return normals || textures.has(TextureSlot::normal); }
 
   /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
   /// alone.
   constexpr bool plain() const {
-    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !multiple_importance;
+    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !coverage &&
+           !multiple_importance;
   }
 };
 

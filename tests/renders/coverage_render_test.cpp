@@ -283,11 +283,12 @@ TEST_F(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
   }
 }
 
-/// Squares with textures in every slot, some with masks, some there by chance, a lamp among them.
+/// Squares with textures in every slot, normal maps among them, some with masks, some there by chance, a lamp among them.
 Scene covered_squares(testbench::FilmSize film) {
   Scene scene = test_support::textured_squares(film, true);
   for (std::size_t i = 1; i < scene.materials.size(); ++i) {
     Material& material = scene.materials[i];
+    if (i < 7) material.textures.normal.texture = 2;
     if (i == 2) continue;  // opaque
     material.alpha_mode = i % 3 == 0 ? AlphaMode::mask : AlphaMode::blend;
     material.alpha = i % 2 == 0 ? 1.0 : 0.6;

@@ -228,6 +228,23 @@ TEST_F(GltfPicture, DoubleSidedLightsEmitFromBothSides) {
   }
 }
 
+/// Its two sheets are one surface to a ray: seen from either side, it is there a quarter of the time.
+TEST_F(GltfPicture, DoubleSidedLightsOfPartialCoverageAreThereOnce) {
+  for (const double z : {4.0, -4.0}) {
+    GltfBuilder file = square_light(z, true);
+    file.root["materials"][0]["alphaMode"] = "BLEND";
+    file.root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.25;
+    testbench::Scene scene = testbench::load_scene(write_file(file));
+    scene.film = {64, 64};
+    double mean = 0.0;
+    for (const auto& path :
+         test_support::native_paths(scene, test_support::render_options(path_tracer::Program::segments, 4)))
+      mean += path.radiance.z / (64 * 64 * 4);
+    // Standard deviation: sqrt(0.25 * 0.75 / 16384).
+    EXPECT_NEAR(mean, 0.25, 5 * 0.0034) << z;
+  }
+}
+
 TEST_F(GltfPicture, OtherLightsEmitFromTheirFrontOnly) {
   testbench::Scene scene = testbench::load_scene(write_file(square_light(-4.0, false)));
   scene.film = {8, 8};

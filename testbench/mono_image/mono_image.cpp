@@ -13,6 +13,7 @@
 #include "testbench/mono_image/barycentric.hpp"
 #include "testbench/mono_image/coverage.hpp"
 #include "testbench/mono_image/faces.hpp"
+#include "testbench/mono_image/material_records.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
@@ -300,21 +301,6 @@ void put_tail(MonoImage& image, std::size_t triangle, int place, const Tail& tai
               sizeof(tail));
 }
 
-path_tracer::MaterialRecord material_record(const Material& material) {
-  path_tracer::MaterialRecord record;
-  const glm::dvec3& colour = material.specular_colour;
-  record.metallic = material.metallic;
-  record.roughness = material.roughness;
-  record.f90 = material.specular;
-  record.f0 =
-      std::min(material.specular, material.specular * path_tracer::reflectance_at_normal(material.ior) *
-                                      std::max({colour.x, colour.y, colour.z}));
-  record.transmission = material.transmission;
-  record.ior = material.ior;
-  record.thin = material.is_thin ? 1 : 0;
-  return record;
-}
-
 /// The normal at the corners as an affine function of the position.
 path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
   const Triangle& triangle = scene.triangles[index];
@@ -340,6 +326,8 @@ void put_material(MonoImage& image, std::size_t triangle, const Material& materi
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
   put_tail(image, triangle, sizes.coverage, coverage_record(material));
   put_tail(image, triangle, sizes.material, material_record(material));
+  put_tail(image, triangle, sizes.varnish_tint, varnish_tint_record(material));
+  put_tail(image, triangle, sizes.transmission_tint, transmission_tint_record(material));
   path_tracer::AbsorptionRecord absorption;
   if (!material.is_thin)
     absorption.coefficient = path_tracer::absorption_coefficient(to_record(material.attenuation_colour),

@@ -5,6 +5,7 @@
 
 #include "firmware/path_tracer/materials/material.hpp"
 #include "testbench/mono_image/coverage.hpp"
+#include "testbench/mono_image/material_records.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/shading_kinds.hpp"
 #include "testbench/mono_image/texture_images.hpp"
@@ -32,6 +33,8 @@ void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes&
     lobes.mirror = lobes.mirror || has_smooth;
     lobes.glossy = lobes.glossy || has_rough;
   }
+  if (opaque > 0 && has_varnish_tint(material)) lobes.varnish_tint = true;
+  if (dielectric > 0 && has_transmission_tint(material)) lobes.transmission_tint = true;
   if (dielectric * transmission.high > 0) {
     lobes.glass = lobes.glass || has_smooth;
     lobes.rough_glass = lobes.rough_glass || has_rough;

@@ -59,11 +59,13 @@ GltfBuilder triangle_file(json attributes = json::object(), json primitive = jso
 TEST_F(GltfPicture, VertexColoursMultiplyTheBaseColour) {
   GltfBuilder file = triangle_file({}, {{"material", 0}});
   file.add("materials",
-           {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 1, 1}}, {"metallicFactor", 0}}}});
+           {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 1, 1}}, {"metallicFactor", 0}}},
+            {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
   json& attributes = file.root["meshes"][0]["primitives"][0]["attributes"];
   attributes["COLOR_0"] = file.add_accessor<float>("VEC4", 4, {0, 1, 0.5f, 1, 0, 1, 0.5f, 1, 0, 1, 0.5f, 1});
   const Mesh mesh = load(file);
   EXPECT_EQ(mesh.materials.at(0).reflectance, glm::dvec3(0, 0.25, 0.5));
+  EXPECT_EQ(mesh.materials.at(0).transmission_colour, glm::dvec3(0, 0.25, 0.5));
   EXPECT_TRUE(mesh.notes.lines().empty());
 }
 

@@ -207,7 +207,7 @@ TEST_F(TomlMaterialTest, WhatPicturesDoNotShowIsNoted) {
                     "transmission_colour = [1, 0, 0]",
                     "[environment]\nconstant = [1, 2, 3]\n[[light]]\ntype = \"point\"\n"
                     "position = [1, 2, 3]\nintensity = [4, 5, 6]\n"));
-  for (const char* const part : {"a colour of a dielectric's reflection", "a colour of transmission",
+  for (const char* const part : {"a colour or strength of reflection is left out where light passes",
                                  "a light without area is left out"})
     EXPECT_NE(notes.find(std::string("scene.toml: ") + part), std::string::npos) << notes << part;
   EXPECT_EQ(notes.find("environment"), std::string::npos) << notes;
@@ -216,7 +216,7 @@ TEST_F(TomlMaterialTest, WhatPicturesDoNotShowIsNoted) {
 TEST_F(TomlMaterialTest, WhatPicturesShowIsNotNoted) {
   write("m.mtl", "");
   const std::string notes = notes_of(
-      load("roughness = 0.5, alpha = 0.5, clearcoat = 1, sheen_colour = [1, 1, 1], transmission = 1, "
+      load("roughness = 0.5, alpha = 0.5, clearcoat = 1, sheen_colour = [1, 1, 1], transmission = 0.5, "
            "transmission_colour = [1, 0, 0]",
            "[environment]\nconstant = [1, 2, 3]\n"));
   EXPECT_EQ(notes.find("left out"), std::string::npos) << notes;

@@ -132,7 +132,7 @@ mask end_shadow_rays(const IlluminateArguments& arguments, const mask& hit, cons
                            tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction));
   arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
   arguments.shadow_ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
-  cn::keep(passes & !at_light, *arguments.passes);
+  cn::keep(passes & !at_light, *arguments.goes_on);
   return !passes;
 }
 

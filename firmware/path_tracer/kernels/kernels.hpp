@@ -85,7 +85,7 @@ struct IlluminateArguments {
   Sampler sampler = Sampler::philox;
   std::uint64_t seed = 0;
   PolyPointer<RayRecord> shadow_ray;
-  LaneMask* passes = nullptr;  ///< PEs whose shadow ray goes on from what it hit
+  LaneMask* goes_on = nullptr;  ///< PEs whose shadow ray goes on from what it hit
 };
 
 /// Which pixels and samples camera rays belong to: pixel by pixel, then sample by sample.

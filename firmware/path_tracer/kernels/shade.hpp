@@ -73,6 +73,9 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
       material.eta.assign_all_lanes(cn::select(enters, ior, 1.0 / ior));
     }
   }
+  if (lobes.varnish_tint)
+    bsdf_detail::assign(material.varnish_tint,
+                        tail<VarnishTintRecord>(surface, sizes.varnish_tint).get(&VarnishTintRecord::tint));
   if (lobes.coat) {
     const auto record = tail<CoatRecord>(surface, sizes.coat);
     material.coat.assign_all_lanes(record.get(&CoatRecord::strength));
@@ -84,6 +87,12 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
     material.sheen_roughness.assign_all_lanes(record.get(&SheenRecord::roughness));
   }
   if (arguments.features.textures.any()) apply_textures(arguments, material);
+  if (lobes.transmission_tint) {
+    const auto record = tail<TransmissionTintRecord>(surface, sizes.transmission_tint);
+    bsdf_detail::assign(material.transmission_color,
+                        cn::select(record.get(&TransmissionTintRecord::is_base) != 0, material.base_color,
+                                   record.get(&TransmissionTintRecord::colour)));
+  }
   return material;
 }
 

@@ -17,6 +17,8 @@ struct Lobes {
   bool coat = false;
   bool sheen = false;
   bool absorption = false;
+  bool varnish_tint = false;
+  bool transmission_tint = false;
 
   constexpr bool rough_specular() const { return glossy || rough_glass; }
   constexpr bool smooth_specular() const { return mirror || glass; }

@@ -34,6 +34,14 @@ struct MaterialRecord {
   std::int32_t thin = 0;  ///< 1: transmits without refraction
   std::int32_t unused = 0;
 };
+struct VarnishTintRecord {
+  vec3<double> tint{1, 1, 1};  ///< of the reflection at normal incidence; the strongest channel is 1
+};
+struct TransmissionTintRecord {
+  vec3<double> colour{};     ///< of what passes, if it is another than the base colour
+  std::int32_t is_base = 1;  ///< 1: it is the base colour
+  std::int32_t unused = 0;
+};
 struct AbsorptionRecord {
   vec3<double> coefficient{};  ///< per unit of length
 };
@@ -168,6 +176,8 @@ struct RecordSizes {
   // In a SurfaceRecord; kNone if the scene has none of it.
   int coverage = kNone;
   int material = kNone;
+  int varnish_tint = kNone;
+  int transmission_tint = kNone;
   int absorption = kNone;
   int coat = kNone;
   int sheen = kNone;
@@ -208,6 +218,8 @@ struct RecordSizes {
     append_texture(TextureSlot::alpha);
     if (features.coverage) surface_of_shadow_ray = surface;
     material = append(features.lobes.specular(), sizeof(MaterialRecord));
+    varnish_tint = append(features.lobes.varnish_tint, sizeof(VarnishTintRecord));
+    transmission_tint = append(features.lobes.transmission_tint, sizeof(TransmissionTintRecord));
     absorption = append(features.lobes.absorption, sizeof(AbsorptionRecord));
     coat = append(features.lobes.coat, sizeof(CoatRecord));
     sheen = append(features.lobes.sheen, sizeof(SheenRecord));

@@ -182,7 +182,7 @@ void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {
   const Loads from = loads(step);
   const Saves to = saves(step);
   Bins::Block& bin = rays(block);
-  LaneMask passes;
+  LaneMask goes_on;
   IlluminateArguments arguments;
   arguments.hit = from.hit;
   arguments.surface = from.surface;
@@ -195,9 +195,9 @@ void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {
   arguments.sampler = context_.config.sampler;
   arguments.seed = context_.config.seed;
   arguments.shadow_ray = to.shadow_ray.ray;
-  arguments.passes = &passes;
+  arguments.goes_on = &goes_on;
   context_.machine.run(context_.kernels.illuminate, arguments, bin.shadow);
-  bin.casts = bin.casts.with(passes);
+  bin.casts = bin.casts.with(goes_on);
 }
 
 void IntersectionStage::save(std::uint64_t step, int block) {

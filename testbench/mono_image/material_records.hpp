@@ -1,7 +1,7 @@
 #pragma once
 
 #include "firmware/path_tracer/records/tails.hpp"
-#include "testbench/material/material.hpp"
+#include "testbench/scene/scene.hpp"
 
 namespace testbench {
 

@@ -283,7 +283,36 @@ TEST_F(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
   }
 }
 
-/// Squares with textures in every slot, normal maps among them, some with masks, some there by chance, a lamp among them.
+/// Sheets back to back in one plane, as leaves often are, are one surface to a ray.
+TEST_F(CoverageRenders, SheetsThatCoincideAreThereOnce) {
+  Scene seen = seen_from_above({4, 4});
+  add_square(seen, 0.0, 1.0, lamp(3.0));
+  Scene shadow = floor_under_lamp();
+  const Mean bare = mean_of(shadow, Program::full, Estimator::light, 4096);
+  for (const bool faces_up : {true, false}) {
+    add_square(seen, 2.0, 1.0, sheet(0.25), faces_up);
+    add_square(shadow, 6.0, 20.0, sheet(0.25), faces_up);
+  }
+  for_each_way([&](Program program, Estimator estimator) {
+    const Mean mean = mean_of(seen, program, estimator, 4096);
+    EXPECT_NEAR(mean.value, 0.75 * 3.0, 5 * std::sqrt(mean.variance)) << int(estimator);
+  });
+  const Mean mean = mean_of(shadow, Program::full, Estimator::light, 4096);
+  EXPECT_NEAR(mean.value, 0.75 * bare.value, 5 * std::sqrt(mean.variance + bare.variance));
+}
+
+/// A cloth close to a wall hides it in part; the wall behind is not passed.
+TEST_F(CoverageRenders, ASheetJustAboveAWallLeavesTheWall) {
+  Scene scene = seen_from_above({4, 4});
+  add_square(scene, 0.0, 1.0, lamp(3.0));
+  add_square(scene, 1e-9, 1.0, sheet(0.25));
+  scene.environment.constant = glm::dvec3(100.0);
+  const Mean mean = mean_of(scene, Program::segments, Estimator::light, 4096);
+  EXPECT_NEAR(mean.value, 0.75 * 3.0, 5 * std::sqrt(mean.variance));
+}
+
+/// Squares with textures in every slot, normal maps among them, some with masks, some there by chance, a lamp
+/// among them.
 Scene covered_squares(testbench::FilmSize film) {
   Scene scene = test_support::textured_squares(film, true);
   for (std::size_t i = 1; i < scene.materials.size(); ++i) {

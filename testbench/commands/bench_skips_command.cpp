@@ -113,10 +113,10 @@ void BenchSkipsCommand::run() {
   const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded));
   // The tree must fit beside the records of a program for anything.
-  options.program.built_for = path_tracer::BuiltFor::anything;
+  options.program.built_for = path_tracer::kBuiltForAnything;
   options.program = built_for(loaded, options.program);
   choose_tree(TriangleCount(loaded), options.chip, firmware.given(), options.program);
-  options.program.built_for = path_tracer::BuiltFor::scene;
+  options.program.built_for = path_tracer::kBuiltForScene;
   const std::vector<Json> results = measure(loaded);
   print_notes(loaded.notes);
   std::printf("%s at %d x %d, %d samples a pixel; chip %s; %s\n\n", loaded.name.c_str(), loaded.film.width,

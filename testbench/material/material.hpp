@@ -61,7 +61,8 @@ struct Material {
   double alpha = 1.0;
   double alpha_cutoff = 0.5;
   bool is_double_sided = false;
-  double normal_scale = 1.0;  ///< multiplies x and y of the normal texture
+  bool is_side_of_light = false;  ///< of a light of two sides, which is two sheets: alpha counts on its front
+  double normal_scale = 1.0;      ///< multiplies x and y of the normal texture
   MaterialTextures textures{};
 };
 

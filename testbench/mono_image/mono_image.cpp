@@ -10,11 +10,14 @@
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/barycentric.hpp"
+#include "testbench/mono_image/coverage.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/lights.hpp"
+#include "testbench/mono_image/material_records.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
 #include "testbench/mono_image/shading_kinds.hpp"
+#include "testbench/mono_image/tangents.hpp"
 #include "testbench/mono_image/texture_images.hpp"
 #include "testbench/mono_image/to_record.hpp"
 #include "testbench/scene/film_ray.hpp"
@@ -173,21 +176,6 @@ void put_tail(MonoImage& image, std::size_t triangle, int place, const Tail& tai
               sizeof(tail));
 }
 
-path_tracer::MaterialRecord material_record(const Material& material) {
-  path_tracer::MaterialRecord record;
-  const glm::dvec3& colour = material.specular_colour;
-  record.metallic = material.metallic;
-  record.roughness = material.roughness;
-  record.f90 = material.specular;
-  record.f0 =
-      std::min(material.specular, material.specular * path_tracer::reflectance_at_normal(material.ior) *
-                                      std::max({colour.x, colour.y, colour.z}));
-  record.transmission = material.transmission;
-  record.ior = material.ior;
-  record.thin = material.is_thin ? 1 : 0;
-  return record;
-}
-
 /// The normal at the corners as an affine function of the position.
 path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
   const Triangle& triangle = scene.triangles[index];
@@ -211,7 +199,10 @@ path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
 
 void put_material(MonoImage& image, std::size_t triangle, const Material& material) {
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
+  put_tail(image, triangle, sizes.coverage, coverage_record(material));
   put_tail(image, triangle, sizes.material, material_record(material));
+  put_tail(image, triangle, sizes.varnish_tint, varnish_tint_record(material));
+  put_tail(image, triangle, sizes.transmission_tint, transmission_tint_record(material));
   path_tracer::AbsorptionRecord absorption;
   if (!material.is_thin)
     absorption.coefficient = path_tracer::absorption_coefficient(to_record(material.attenuation_colour),
@@ -249,6 +240,7 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
     std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
     put_material(image, i, material);
     if (has_normals) put_tail(image, i, sizes.normal, normal_record(triangles.scene, i));
+    put_tail(image, i, sizes.tangent, tangent_record(triangles.scene, i));
     path_tracer::AimRecord aim{std::numeric_limits<double>::infinity()};
     if (light_of[i] != path_tracer::kNoLight)
       aim.inverse_pdf = lights.records[std::size_t(light_of[i])].inverse_pdf;

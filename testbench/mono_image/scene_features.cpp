@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "firmware/path_tracer/materials/material.hpp"
+#include "testbench/mono_image/coverage.hpp"
+#include "testbench/mono_image/material_records.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/shading_kinds.hpp"
 #include "testbench/mono_image/texture_images.hpp"
@@ -31,6 +33,8 @@ void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes&
     lobes.mirror = lobes.mirror || has_smooth;
     lobes.glossy = lobes.glossy || has_rough;
   }
+  if (opaque > 0 && has_varnish_tint(material)) lobes.varnish_tint = true;
+  if (dielectric > 0 && has_transmission_tint(material)) lobes.transmission_tint = true;
   if (dielectric * transmission.high > 0) {
     lobes.glass = lobes.glass || has_smooth;
     lobes.rough_glass = lobes.rough_glass || has_rough;
@@ -54,18 +58,15 @@ void add_textures(const Material& material, const path_tracer::Lobes& lobes,
   add(path_tracer::TextureSlot::metallic, lobes.specular());
   add(path_tracer::TextureSlot::roughness, lobes.specular());
   add(path_tracer::TextureSlot::transmission, lobes.transmissive());
+  add(path_tracer::TextureSlot::normal, true);
 }
 
-/// What a program that renders anything has, beyond what this scene's has.
-void add_every_feature(path_tracer::Features& features) {
-  features.lobes = path_tracer::kEveryLobe;
-  features.environment = true;
-  features.normals = true;
-  for (bool& uses : features.textures.uses) uses = true;
-  features.textures.roughness_with_metallic = false;
-  if (!features.lights.any()) return;  // there is none to aim at
-  features.lights.points = true;
-  features.lights.distant = true;
+void add_coverage(const Scene& scene, const Material& material, path_tracer::Features& features) {
+  if (!lets_rays_through(scene, material)) return;
+  features.coverage = true;
+  if (material.alpha_mode == AlphaMode::blend) features.blended_coverage = true;
+  if (shown_texture(material, path_tracer::TextureSlot::alpha))
+    features.textures.uses[int(path_tracer::TextureSlot::alpha)] = true;
 }
 
 path_tracer::LightKinds light_kinds(const Scene& scene) {
@@ -95,6 +96,8 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
     features.lobes.diffuse = true;
   for (std::size_t i = 0; i < is_used.size(); ++i)
     if (is_used[i]) add_textures(scene.materials[i], features.lobes, features.textures);
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) add_coverage(scene, scene.materials[i], features);
   features.textures.roughness_with_metallic =
       features.textures.has(path_tracer::TextureSlot::roughness) &&
       features.textures.has(path_tracer::TextureSlot::metallic) &&
@@ -102,7 +105,7 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
   features.lights = light_kinds(scene);
   features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
-  if (config.built_for == path_tracer::BuiltFor::anything) add_every_feature(features);
+  path_tracer::kBuiltForTable.at(std::size_t(config.built_for)).add(features);
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();
   features.multiple_importance = config.program != path_tracer::Program::segments &&
                                  features.lights.can_be_hit() &&

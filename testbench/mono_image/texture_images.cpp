@@ -17,11 +17,12 @@ using path_tracer::TexelFootprint;
 using path_tracer::TextureRecord;
 using path_tracer::TextureSlot;
 
+constexpr int kAlphaChannel = 3;
+
 /// The code of a channel; grey is red, green and blue, and alpha is 255 in an image without.
 std::uint8_t code_of(const Image& image, std::size_t texel, int channel) {
-  constexpr int kAlpha = 3;
   const std::uint8_t* const codes = &image.texels[texel * std::size_t(image.channels)];
-  if (channel == kAlpha) return has_alpha(image) ? codes[image.channels - 1] : 255;
+  if (channel == kAlphaChannel) return has_alpha(image) ? codes[image.channels - 1] : 255;
   return codes[image.channels <= 2 ? 0 : channel];
 }
 
@@ -112,6 +113,10 @@ const TextureReference& shown_texture(const Material& material, TextureSlot slot
       return material.textures.roughness;
     case TextureSlot::transmission:
       return material.textures.transmission;
+    case TextureSlot::alpha:
+      return material.alpha_mode == AlphaMode::opaque ? kNone : material.textures.alpha;
+    case TextureSlot::normal:
+      return material.textures.normal;
   }
   return kNone;
 }
@@ -164,7 +169,7 @@ const TextureReference& TextureImages::reference_of(const Material& material, Te
 TextureImages::Use TextureImages::use_of(const Material& material, TextureSlot slot) const {
   const TextureReference& shown = shown_texture(material, slot);
   Use use{reference_of(material, slot).texture};
-  if (path_tracer::is_colour(slot)) return use;
+  if (path_tracer::has_three_channels(slot)) return use;
   use.channel = shown ? shown.channel : kWhite;
   if (slot == TextureSlot::metallic && slots_.roughness_with_metallic) {
     const TextureReference& roughness = shown_texture(material, TextureSlot::roughness);
@@ -176,7 +181,7 @@ TextureImages::Use TextureImages::use_of(const Material& material, TextureSlot s
 void TextureImages::write(std::uint8_t* to) const {
   for (const auto& [use, place] : place_of_) {
     const Image& image = scene_.textures[std::size_t(use.texture)].image;
-    if (use.channel == kColour) {
+    if (use.channel == kThree) {
       write_footprints(image, to + place, [&](int x, int y) {
         return ColourFootprint{footprint(image, x, y, 0), footprint(image, x, y, 1),
                                footprint(image, x, y, 2)};
@@ -202,7 +207,9 @@ TextureRecord TextureImages::record_of(std::size_t triangle, TextureSlot slot, c
   const TextureReference& reference = reference_of(material, slot);
   if (!reference) return record;
   const Texture& texture = scene_.textures[std::size_t(reference.texture)];
-  if (texture.encoding != (path_tracer::is_colour(slot) ? TexelEncoding::srgb : TexelEncoding::linear))
+  const TexelEncoding encoding = path_tracer::is_colour(slot) ? TexelEncoding::srgb : TexelEncoding::linear;
+  const bool is_alpha_channel = !path_tracer::has_three_channels(slot) && reference.channel == kAlphaChannel;
+  if (texture.encoding != encoding && !is_alpha_channel)
     throw std::logic_error(texture.name + ": colours have sRGB texels, other slots have linear ones");
   const auto& coordinates = scene_.corners.coordinates[std::size_t(reference.coordinate_set)];
   CornerPlaces x{};

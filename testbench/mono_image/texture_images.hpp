@@ -39,12 +39,12 @@ class TextureImages {
                                        cn::MonoAddress first) const;
 
  private:
-  static constexpr int kColour = -1;
+  static constexpr int kThree = -1;
   static constexpr int kWhite = -2;
   /// What an array of footprints shows.
   struct Use {
     std::int32_t texture = kNoTexture;
-    int channel = kColour;   ///< or kWhite
+    int channel = kThree;    ///< red, green and blue; or one channel, or kWhite
     int roughness = kWhite;  ///< channel of roughness, where it is looked up with metallic
 
     bool operator<(const Use& other) const {

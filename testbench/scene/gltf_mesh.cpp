@@ -127,8 +127,7 @@ class Collector {
     for (std::uint32_t i = 0; i < primitive.positions.size(); ++i)
       positions.emplace_back(of_vertex(i) * glm::dvec4(primitive.positions[i], 1.0));
     const std::size_t plain = material_index(place);
-    const bool emits_from_both_sides =
-        material(plain).is_double_sided && material(plain).emission != glm::dvec3(0.0);
+    const bool emits_from_both_sides = material(plain).is_side_of_light;
     const std::vector<glm::dvec3> normals = moved_normals(primitive, of_vertex);
     // A transform that mirrors reverses the winding of triangles.
     const bool is_mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
@@ -179,7 +178,8 @@ class Collector {
   const Material& material(std::size_t index) {
     if (index < is_read_.size() && !is_read_[index]) {
       is_read_[index] = true;
-      materials_[index] = read_gltf_material(document_, textures_, index);
+      Material& read = materials_[index] = read_gltf_material(document_, textures_, index);
+      read.is_side_of_light = read.is_double_sided && read.emission != glm::dvec3(0.0);
     }
     return materials_[index];
   }

@@ -68,6 +68,7 @@ std::int32_t ColourMaterials::index_of(const glm::dvec4& colour, const Material&
   material.name = "colour" + std::to_string(index_of_.size());
   material.reflectance = glm::dvec3(colour);
   material.alpha = colour.a;
+  if (plain.transmission_colour == plain.reflectance) material.transmission_colour = material.reflectance;
   materials_.push_back(std::move(material));
   return entry->second;
 }

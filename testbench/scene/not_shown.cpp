@@ -12,21 +12,10 @@ struct NotShown {
 
 /// What materials have and the firmware does not render.
 constexpr NotShown kNotShown[] = {
-    {"a texture of a material's normal or alpha is left out",
-     [](const Material& material) { return material.textures.normal || material.textures.alpha; }},
-    {"a material of partial coverage (alpha) is shown as opaque",
+    {"a colour or strength of reflection is left out where light passes",
      [](const Material& material) {
-       return material.alpha_mode == AlphaMode::blend && material.alpha < 1.0;
-     }},
-    {"a colour of a dielectric's reflection is shown as its strongest channel in grey",
-     [](const Material& material) {
-       const glm::dvec3& colour = material.specular_colour;
-       return material.specular > 0.0 && !(colour.x == colour.y && colour.y == colour.z);
-     }},
-    {"a colour of transmission is left out, what passes has the base colour",
-     [](const Material& material) {
-       return material.transmission > 0.0 && !shows_transmission_colour(material) &&
-              material.transmission_colour != material.reflectance;
+       return material.transmission > 0.0 &&
+              (material.specular != 1.0 || material.specular_colour != glm::dvec3(1.0));
      }},
 };
 

@@ -7,7 +7,7 @@ const std::vector<Skip>& skip_table() {
   using path_tracer::RunCounts;
   static const std::vector<Skip> table = {
       {"features that the scene does not have", "--built-for anything",
-       [](ProgramConfig& program) { program.built_for = path_tracer::BuiltFor::anything; }, false, nullptr},
+       [](ProgramConfig& program) { program.built_for = path_tracer::kBuiltForAnything; }, false, nullptr},
       {"lobes that no hit of a block has", "--shading every_lobe",
        [](ProgramConfig& program) { program.shading = path_tracer::Shading::every_lobe; }, true, nullptr},
       {"shadow rays that cannot contribute", "--shadow-rays all",

@@ -31,6 +31,8 @@ struct MonoMaterial {
   double coat = 0;
   double coat_roughness = 0;
   Vector sheen_color{0, 0, 0};
+  Vector varnish_tint{1, 1, 1};
+  Vector transmission_color{1, 1, 1};
   double sheen_roughness = 0.5;
 };
 
@@ -94,7 +96,9 @@ class MaterialBench : public StripFixture {
             m.coat,
             m.coat_roughness,
             {m.sheen_color.x, m.sheen_color.y, m.sheen_color.z},
-            m.sheen_roughness};
+            m.sheen_roughness,
+            {m.varnish_tint.x, m.varnish_tint.y, m.varnish_tint.z},
+            {m.transmission_color.x, m.transmission_color.y, m.transmission_color.z}};
   }
   static path_tracer::Direction3 poly_direction(const Vector& v) { return {v.x, v.y, v.z}; }
 

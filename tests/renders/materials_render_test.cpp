@@ -171,6 +171,48 @@ TEST(MaterialsRender, ABodyAbsorbsByItsDepth) {
   EXPECT_NEAR(mean.value.z, 1.0, 1e-9);
 }
 
+/// At normal incidence a smooth dielectric reflects what its colour says, channel by channel, at most 1.
+TEST(MaterialsRender, VarnishReflectsItsColour) {
+  Material varnish = plastic(0.0);
+  varnish.reflectance = glm::dvec3(0.0);
+  varnish.specular_colour = {1.0, 0.25, 30.0};
+  varnish.specular = 0.75;
+  Scene scene = seen_from_afar(0.0001, {4, 4});
+  scene.materials = {varnish};
+  scene.environment.constant = glm::dvec3(1.0);
+  add_square(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
+  RenderOptions options = independent(Program::full, 4);
+  options.program.roulette_start = 8;
+  const Mean mean = mean_of(render_natively(scene, options).film);
+  EXPECT_NEAR(mean.value.x, 0.75 * 0.04, 1e-9);
+  EXPECT_NEAR(mean.value.y, 0.75 * 0.01, 1e-9);
+  EXPECT_NEAR(mean.value.z, 0.75, 1e-9);
+}
+
+/// A sheet of which half passes light in a colour of its own, the other half reflects the base colour; a
+/// square beside it passes its base colour.
+TEST(MaterialsRender, WhatPassesHasItsOwnColour) {
+  Material sheet = glass(0.0, 1.0);
+  sheet.is_thin = true;
+  sheet.specular = 0.0;
+  sheet.transmission = 0.5;
+  sheet.reflectance = {0.9, 0.5, 0.1};
+  sheet.transmission_colour = {0.1, 0.5, 1.0};
+  Material other = sheet;
+  other.transmission_colour = other.reflectance;
+  Scene scene = seen_from_afar(1.0, {8, 8});
+  scene.materials = {sheet, other};
+  scene.environment.constant = glm::dvec3(1.0);
+  add_square(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0);
+  add_square(scene, {5, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1);
+  for (const glm::dvec3& expected : {glm::dvec3(0.5, 0.5, 0.55), glm::dvec3(0.9, 0.5, 0.1)}) {
+    const Mean mean = mean_of(render_natively(scene, independent(Program::full, 1024)).film);
+    for (int channel = 0; channel < 3; ++channel)
+      EXPECT_NEAR(mean.value[channel], expected[channel], 5 * std::sqrt(mean.variance[channel]) + 1e-9);
+    scene.camera.position.x = 6.0;
+  }
+}
+
 /// Of the directions around a normal that leans by `angle` from the triangle's, (1 + cos(angle)) / 2 by
 /// weight lie above the triangle; the others get no light.
 TEST(MaterialsRender, NormalsOfCornersTurnTheShading) {
@@ -220,8 +262,13 @@ TEST(MaterialsRender, EstimatorsAgree) {
   gold.reflectance = {0.8, 0.6, 0.3};
   Material red = plastic(0.2);
   red.reflectance = {0.8, 0.2, 0.2};
-  const Case cases[] = {{"gold", gold},          {"red", red},           {"glass", glass(0.0)},
-                        {"frosted", glass(0.4)}, {"mirror", metal(0.0)}, {"coat", coated()}};
+  Material tinted = glass(0.4);
+  tinted.specular_colour = {1.0, 5.0, 2.0};
+  tinted.transmission = 0.5;
+  tinted.transmission_colour = {0.3, 0.9, 0.6};
+  const Case cases[] = {{"tinted", tinted},    {"gold", gold},          {"red", red},
+                        {"glass", glass(0.0)}, {"frosted", glass(0.4)}, {"mirror", metal(0.0)},
+                        {"coat", coated()}};
   for (const Case& of : cases) {
     const Scene scene = sphere_of(of.material, {16, 16});
     const Mean by_hits = mean_of(render_natively(scene, independent(Program::segments, 1024)).film);
@@ -280,6 +327,8 @@ TEST(MaterialsRender, DiffuseScenesPayNothing) {
   const testbench::MonoImage with_tails = testbench::make_mono_image(shiny, 96, options.program);
   EXPECT_FALSE(with_tails.layout.features.plain());
   EXPECT_FALSE(with_tails.layout.features.lobes.coat);
+  EXPECT_FALSE(with_tails.layout.features.lobes.varnish_tint);
+  EXPECT_FALSE(with_tails.layout.features.lobes.transmission_tint);
   EXPECT_GT(with_tails.layout.sizes.surface, image.layout.sizes.surface);
 }
 

@@ -59,11 +59,13 @@ GltfBuilder triangle_file(json attributes = json::object(), json primitive = jso
 TEST_F(GltfPicture, VertexColoursMultiplyTheBaseColour) {
   GltfBuilder file = triangle_file({}, {{"material", 0}});
   file.add("materials",
-           {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 1, 1}}, {"metallicFactor", 0}}}});
+           {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 1, 1}}, {"metallicFactor", 0}}},
+            {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
   json& attributes = file.root["meshes"][0]["primitives"][0]["attributes"];
   attributes["COLOR_0"] = file.add_accessor<float>("VEC4", 4, {0, 1, 0.5f, 1, 0, 1, 0.5f, 1, 0, 1, 0.5f, 1});
   const Mesh mesh = load(file);
   EXPECT_EQ(mesh.materials.at(0).reflectance, glm::dvec3(0, 0.25, 0.5));
+  EXPECT_EQ(mesh.materials.at(0).transmission_colour, glm::dvec3(0, 0.25, 0.5));
   EXPECT_TRUE(mesh.notes.lines().empty());
 }
 
@@ -225,6 +227,23 @@ TEST_F(GltfPicture, DoubleSidedLightsEmitFromBothSides) {
         EXPECT_EQ(path.radiance.z, 1.0);
       }
     }
+  }
+}
+
+/// Its two sheets are one surface to a ray: seen from either side, it is there a quarter of the time.
+TEST_F(GltfPicture, DoubleSidedLightsOfPartialCoverageAreThereOnce) {
+  for (const double z : {4.0, -4.0}) {
+    GltfBuilder file = square_light(z, true);
+    file.root["materials"][0]["alphaMode"] = "BLEND";
+    file.root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.25;
+    testbench::Scene scene = testbench::load_scene(write_file(file));
+    scene.film = {64, 64};
+    double mean = 0.0;
+    for (const auto& path :
+         test_support::native_paths(scene, test_support::render_options(path_tracer::Program::segments, 4)))
+      mean += path.radiance.z / (64 * 64 * 4);
+    // Standard deviation: sqrt(0.25 * 0.75 / 16384).
+    EXPECT_NEAR(mean, 0.25, 5 * 0.0034) << z;
   }
 }
 

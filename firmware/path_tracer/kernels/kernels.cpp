@@ -3,6 +3,7 @@
 #include "firmware/path_tracer/kernels/kernels.hpp"
 
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
+#include "firmware/path_tracer/kernels/coverage.hpp"
 #include "firmware/path_tracer/kernels/outside.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/shade.hpp"
@@ -111,26 +112,66 @@ mask is_light(const IlluminateArguments& arguments) {
   return arguments.surface.get(&SurfaceRecord::face) == arguments.lighting.get(&LightingRecord::light_face);
 }
 
+/// Whether what the shadow ray hit lets it through.
+mask lets_shadow_ray_through(const IlluminateArguments& arguments) {
+  const auto chance = [&] {
+    const auto numbers = tail<ShadowNumbersRecord>(arguments.lighting);
+    return coverage_number(arguments.sampler, arguments.seed, numbers.get(&ShadowNumbersRecord::pixel),
+                           numbers.get(&ShadowNumbersRecord::sample),
+                           numbers.get(&ShadowNumbersRecord::depth),
+                           arguments.surface.get(&SurfaceRecord::face));
+  };
+  return lets_through(arguments.features, arguments.sizes, arguments.surface, arguments.look_ups,
+                      arguments.hit.get(&HitRecord::front) != 0, chance);
+}
+
+/// The rest of a shadow ray's direction behind its hit. That of a near light without a triangle ends at the
+/// light.
+Direction3 rest_of_shadow_ray(const IlluminateArguments& arguments) {
+  const auto arrival = tail<ArrivalRecord>(arguments.hit);
+  const Direction3 direction = arrival.get(&ArrivalRecord::direction);
+  if (!arguments.features.lights.points) return direction;
+  const poly<double> rest = 1.0 - arrival.get(&ArrivalRecord::distance);
+  const mask is_near = arguments.lighting.get(&LightingRecord::light_face) == poly<std::int32_t>(kNoFace);
+  return direction * cn::select(is_near, rest, poly<double>(1.0));
+}
+
+/// The PEs whose shadow ray ends where it hit. In scenes with coverage, the others' rays go on unless they
+/// are at their light.
+mask end_shadow_rays(const IlluminateArguments& arguments, const mask& hit, const mask& at_light) {
+  const mask passes = hit & lets_shadow_ray_through(arguments);
+  arguments.shadow_ray.set(&RayRecord::origin, arguments.hit.get(&HitRecord::position));
+  arguments.shadow_ray.set(&RayRecord::direction, rest_of_shadow_ray(arguments));
+  arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
+  arguments.shadow_ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
+  cn::keep(passes & !at_light, *arguments.goes_on);
+  return !passes;
+}
+
 void illuminate_by_any(const IlluminateArguments& arguments) {
   const vec3<poly<double>> none{0.0, 0.0, 0.0};
   const LightWithoutTriangle other = light_without_triangle(arguments);
   Rgb radiance = cn::select(other.sees, other.radiance, none);
-  if (arguments.lights.surfaces) {
-    const mask sees = (arguments.hit.get(&HitRecord::hit) != 0) & is_light(arguments);
+  const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
+  mask sees = hit & (arguments.lights.surfaces ? is_light(arguments) : other.sees);
+  if (arguments.features.coverage) sees = sees & end_shadow_rays(arguments, hit, other.sees | sees);
+  if (arguments.lights.surfaces)
     radiance =
         cn::select(sees, emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups), radiance);
-  }
   arguments.direct_light.set(&DirectLightRecord::radiance,
                              radiance * arguments.lighting.get(&LightingRecord::weight));
 }
 
 void illuminate(const IlluminateArguments& arguments) {
-  const vec3<poly<double>> none{0.0, 0.0, 0.0};
   if (arguments.lights.without_triangles()) {
     illuminate_by_any(arguments);
     return;
   }
-  const mask sees = (arguments.hit.get(&HitRecord::hit) != 0) & is_light(arguments);
+  const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
+  const mask at_light = is_light(arguments);
+  mask sees = hit & at_light;
+  if (arguments.features.coverage) sees = sees & end_shadow_rays(arguments, hit, at_light);
+  const vec3<poly<double>> none{0.0, 0.0, 0.0};
   const vec3<poly<double>> light = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups) *
                                    arguments.lighting.get(&LightingRecord::weight);
   arguments.direct_light.set(&DirectLightRecord::radiance, cn::select(sees, light, none));
@@ -178,6 +219,8 @@ void start_path(const ContinuePathsArguments& arguments, const poly<std::int32_t
   arguments.next_path.set(&PathRecord::folded, poly<std::int32_t>(0));
   if (arguments.path_has_tail)
     tail<DirectionRecord>(arguments.next_path).set(&DirectionRecord::pdf, poly<double>(kInfinity));
+  if (arguments.has_passed)
+    passed_behind(arguments.next_path).set(&PassedRecord::distance, poly<double>(0.0));
 }
 
 void continue_path(const ContinuePathsArguments& arguments) {
@@ -196,6 +239,9 @@ void continue_path(const ContinuePathsArguments& arguments) {
   if (arguments.path_has_tail)
     tail<DirectionRecord>(arguments.next_path)
         .set(&DirectionRecord::pdf, tail<DirectionRecord>(arguments.scatter).get(&DirectionRecord::pdf));
+  if (arguments.has_passed)
+    passed_behind(arguments.next_path)
+        .set(&PassedRecord::distance, passed_behind(arguments.scatter).get(&PassedRecord::distance));
 }
 
 /// Chooses the light for the shadow ray of the vertex that the new ray will find. It is chosen this early

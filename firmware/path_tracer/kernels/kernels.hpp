@@ -82,7 +82,8 @@ struct ShadeArguments : ScatterArguments {
   PolyPointer<TextureLookUp> look_ups;
 };
 
-/// Intersection stage, shadow rays: direct light if the ray hit its light.
+/// Intersection stage, shadow rays: direct light if the ray hit its light; the ray's rest if it hit a surface
+/// that lets it through.
 struct IlluminateArguments {
   PolyPointer<HitRecord> hit;
   PolyPointer<SurfaceRecord> surface;
@@ -92,6 +93,12 @@ struct IlluminateArguments {
   RecordSizes sizes{Features{}};
   PolyPointer<TextureLookUp> look_ups;
   PolyPointer<DirectLightRecord> direct_light;
+  // Of scenes with coverage only:
+  Features features;
+  Sampler sampler = Sampler::philox;
+  std::uint64_t seed = 0;
+  PolyPointer<RayRecord> shadow_ray;
+  LaneMask* goes_on = nullptr;  ///< PEs whose shadow ray goes on from what it hit
 };
 
 /// Which pixels and samples camera rays belong to: pixel by pixel, then sample by sample.
@@ -134,6 +141,7 @@ struct ContinuePathsArguments {
   std::int32_t remaining = 0;  ///< camera rays to generate, at most the number of PEs
   PolyPointer<PathRecord> next_path;
   bool path_has_tail = false;  ///< DirectionRecord, as `path` and `scatter`
+  bool has_passed = false;     ///< behind it a PassedRecord
   PolyPointer<RayRecord> ray;
   /// Place of the light for the next vertex, kept for the intersection stage's gather.
   PolyField<MonoAddress> light_place;

@@ -32,6 +32,12 @@ cn::PolyPointer<Tail> tail(const cn::PolyPointer<Record>& record, int place = si
   return cn::PolyPointer<Tail>(record.span().offset_bytes + place);
 }
 
+/// The PassedRecord behind a record's DirectionRecord.
+template <class Record>
+cn::PolyPointer<PassedRecord> passed_behind(const cn::PolyPointer<Record>& record) {
+  return tail<PassedRecord>(tail<DirectionRecord>(record));
+}
+
 /// Writes the result of a finished search for the intersection stage.
 /// @param has_tail whether an ArrivalRecord follows
 inline void write_hit(const Nearest& nearest, const Point3& origin, const Direction3& direction,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/path_tracer/kernels/coverage.hpp"
 #include "firmware/path_tracer/kernels/kernels.hpp"
 #include "firmware/path_tracer/kernels/outside.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
@@ -70,6 +71,9 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
       material.eta.assign_all_lanes(cn::select(enters, ior, 1.0 / ior));
     }
   }
+  if (lobes.varnish_tint)
+    bsdf_detail::assign(material.varnish_tint,
+                        tail<VarnishTintRecord>(surface, sizes.varnish_tint).get(&VarnishTintRecord::tint));
   if (lobes.coat) {
     const auto record = tail<CoatRecord>(surface, sizes.coat);
     material.coat.assign_all_lanes(record.get(&CoatRecord::strength));
@@ -81,6 +85,12 @@ inline Material read_material(const ShadeArguments& arguments, const mask& front
     material.sheen_roughness.assign_all_lanes(record.get(&SheenRecord::roughness));
   }
   if (arguments.features.textures.any()) apply_textures(arguments, material);
+  if (lobes.transmission_tint) {
+    const auto record = tail<TransmissionTintRecord>(surface, sizes.transmission_tint);
+    bsdf_detail::assign(material.transmission_color,
+                        cn::select(record.get(&TransmissionTintRecord::is_base) != 0, material.base_color,
+                                   record.get(&TransmissionTintRecord::colour)));
+  }
   return material;
 }
 
@@ -110,7 +120,9 @@ inline poly<double> weight_of_hit(const ShadeArguments& arguments, const Directi
   const poly<double> none = 0.0;
   if (arguments.sizes.aim == RecordSizes::kNone) return cn::select(counts, poly<double>(1.0), none);
   const auto arrival = tail<ArrivalRecord>(arguments.hit);
-  const poly<double> distance = arrival.get(&ArrivalRecord::distance);
+  poly<double> distance = arrival.get(&ArrivalRecord::distance);
+  if (arguments.sizes.has_passed)
+    distance.assign_all_lanes(distance + passed_behind(arguments.path).get(&PassedRecord::distance));
   const poly<double> facing = -dot(arrival.get(&ArrivalRecord::direction), normal) * distance;
   const poly<double> inverse_pdf =
       tail<AimRecord>(arguments.surface, arguments.sizes.aim).get(&AimRecord::inverse_pdf);
@@ -137,6 +149,23 @@ inline void sample_other_shapes(const ShadeArguments& arguments, const ShadedVer
   if (lights.environment)
     take_where(LightShape::environment,
                [&] { return sample_environment(light, arguments.image, normal, u, v); });
+}
+
+/// Keeps what the choices along a shadow ray depend on.
+inline void keep_shadow_numbers(const ShadeArguments& arguments) {
+  const auto numbers = tail<ShadowNumbersRecord>(arguments.lighting);
+  numbers.set(&ShadowNumbersRecord::pixel, arguments.path.get(&PathRecord::pixel));
+  numbers.set(&ShadowNumbersRecord::sample, arguments.path.get(&PathRecord::sample));
+  numbers.set(&ShadowNumbersRecord::depth, arguments.path.get(&PathRecord::depth));
+}
+
+/// The face at which a shadow ray's search may end. What lets a shadow ray through does not end it, so in
+/// scenes with coverage it looks for the nearest hit, as it does for lights without triangles.
+inline poly<std::int32_t> searched_face(const ShadeArguments& arguments,
+                                        const poly<std::int32_t>& light_face) {
+  if (arguments.features.coverage) return kNoFace;
+  if (!arguments.features.lights.without_triangles()) return light_face;
+  return cn::max(light_face, poly<std::int32_t>(kNoFace));
 }
 
 /// Aims a shadow ray and records what it contributes if it reaches its light.
@@ -177,14 +206,13 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
   arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
   arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
   const poly<std::int32_t> light_face = light.get(&LightRecord::face);
-  arguments.shadow_ray.set(&RayRecord::light_face, lights.without_triangles()
-                                                       ? cn::max(light_face, poly<std::int32_t>(kNoFace))
-                                                       : light_face);
+  arguments.shadow_ray.set(&RayRecord::light_face, searched_face(arguments, light_face));
   arguments.lighting.set(&LightingRecord::weight, contribution);
   arguments.lighting.set(&LightingRecord::light_face, light.get(&LightRecord::face));
   if (arguments.is_in_layers)
     arguments.lighting.set(&LightingRecord::light,
                            light_number(arguments.light_place.read(), arguments.lights));
+  if (arguments.features.blended_coverage) keep_shadow_numbers(arguments);
   cn::keep(arguments.cull_shadow_rays ? wants_light & (largest_channel(contribution) > 0.0) : wants_light,
            *arguments.casts);
 }
@@ -200,23 +228,47 @@ inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
   return cn::select(front, Rgb{one, one, one}, transmittance(coefficient, distance));
 }
 
-/// The normal of shading on the viewer's side. Where interpolation turns it away from the viewer, it is that
-/// of the triangle: a surface that is seen is not seen from behind.
-inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& position,
-                                 const Direction3& normal, const mask& front, const Direction3& to_viewer) {
-  if (arguments.sizes.normal == RecordSizes::kNone) return normal;
+/// The normal that the triangle's normal texture says (glTF 2.0, section 3.9.3). The tangent is turned into
+/// the plane of `normal`, as MikkTSpace does: https://github.com/mmikk/MikkTSpace.
+/// @param normal without the texture, on the front
+inline Direction3 mapped_normal(const ShadeArguments& arguments, const Direction3& normal) {
+  const auto record = tail<TangentRecord>(arguments.surface, arguments.sizes.tangent);
+  const Rgb texel =
+      TexturesAtHit(arguments.surface, arguments.sizes, arguments.look_ups).linear(TextureSlot::normal);
+  const Direction3 in_plane = record.get(&TangentRecord::tangent);
+  const Direction3 none{0.0, 0.0, 0.0};
+  const Direction3 tangent = normalize(in_plane - normal * dot(in_plane, normal), none);
+  const poly<double> x = (texel.x * 2.0 - 1.0) * record.get(&TangentRecord::x_scale);
+  const poly<double> y = (texel.y * 2.0 - 1.0) * record.get(&TangentRecord::y_scale);
+  return normalize(tangent * x + cross(normal, tangent) * y + normal * (texel.z * 2.0 - 1.0), normal);
+}
+
+/// The interpolated normal on the front. @param otherwise where it vanishes
+inline Direction3 interpolated_normal(const ShadeArguments& arguments, const Point3& position,
+                                      const Direction3& otherwise) {
   const auto record = tail<NormalRecord>(arguments.surface, arguments.sizes.normal);
   const Direction3 along = record.get(&NormalRecord::along_x) * position.x +
                            record.get(&NormalRecord::along_y) * position.y +
                            record.get(&NormalRecord::along_z) * position.z;
-  const Direction3 unit = normalize(record.get(&NormalRecord::at_origin) + along, normal);
+  return normalize(record.get(&NormalRecord::at_origin) + along, otherwise);
+}
+
+/// The normal of shading on the viewer's side. Where interpolation or a texture turns it away from the
+/// viewer, it is that of the triangle: a surface that is seen is not seen from behind.
+inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& position,
+                                 const Direction3& normal, const mask& front, const Direction3& to_viewer) {
+  if (!arguments.features.shading_normals()) return normal;
+  Direction3 unit = arguments.features.normals ? interpolated_normal(arguments, position, normal)
+                                               : arguments.surface.get(&SurfaceRecord::normal);
+  if (arguments.features.textures.has(TextureSlot::normal))
+    bsdf_detail::assign(unit, mapped_normal(arguments, unit));
   const Direction3 facing = cn::select(front, unit, unit * -1.0);
   return cn::select(dot(facing, to_viewer) > kLeastCosine, facing, normal);
 }
 
 inline Bsdf bsdf_at_hit(const ShadeArguments& arguments, const Direction3& normal, const mask& front) {
   BsdfConfig config;
-  config.shading_normals = arguments.features.normals;
+  config.shading_normals = arguments.features.shading_normals();
   config.lobes = arguments.features.lobes;
   config.diffuse_pdf = arguments.features.multiple_importance;
   config.skips_absent_lobes = arguments.skips_absent_lobes;
@@ -283,6 +335,41 @@ inline void continue_at(const ShadeArguments& arguments, const ShadedVertex& ver
   tail<DirectionRecord>(arguments.scatter)
       .set(&DirectionRecord::pdf,
            cn::select(sample.is_delta | sample.transmits, poly<double>(kInfinity), shared));
+  if (arguments.sizes.has_passed)
+    passed_behind(arguments.scatter).set(&PassedRecord::distance, poly<double>(0.0));
+}
+
+/// Whether what the segment hit lets it through. Scenes without coverage do not ask.
+inline mask lets_segment_through(const ShadeArguments& arguments, const mask& hit, const mask& front) {
+  const PolyPointer<PathRecord>& path = arguments.path;
+  const auto chance = [&] {
+    return coverage_number(arguments.sampler, arguments.seed, path.get(&PathRecord::pixel),
+                           path.get(&PathRecord::sample), path.get(&PathRecord::depth),
+                           arguments.surface.get(&SurfaceRecord::face));
+  };
+  return hit & lets_through(arguments.features, arguments.sizes, arguments.surface, arguments.look_ups, front,
+                            chance);
+}
+
+/// Lets segments go straight on: their vertex neither emits nor scatters. How likely the direction was, and
+/// how far the vertex is that chose it, goes on with them, so that hits of lights are weighed as if nothing
+/// had been between.
+inline void pass_on(const ShadeArguments& arguments, const mask& passes, const Rgb& arrived) {
+  cn::poly_if_any(passes, [&] {
+    const auto arrival = tail<ArrivalRecord>(arguments.hit);
+    const poly<double> zero = 0.0;
+    const poly<double> one = 1.0;
+    arguments.scatter.set(&ScatterRecord::radiance, Rgb{zero, zero, zero});
+    arguments.scatter.set(&ScatterRecord::weight, dimmed(arguments, Rgb{one, one, one}, arrived));
+    arguments.scatter.set(&ScatterRecord::direction, arrival.get(&ArrivalRecord::direction));
+    arguments.scatter.set(&ScatterRecord::ended, poly<std::int32_t>(0));
+    tail<DirectionRecord>(arguments.scatter)
+        .set(&DirectionRecord::pdf, tail<DirectionRecord>(arguments.path).get(&DirectionRecord::pdf));
+    if (arguments.sizes.has_passed)
+      passed_behind(arguments.scatter)
+          .set(&PassedRecord::distance, passed_behind(arguments.path).get(&PassedRecord::distance) +
+                                            arrival.get(&ArrivalRecord::distance));
+  });
 }
 
 inline void shade(const ShadeArguments& arguments) {
@@ -302,8 +389,12 @@ inline void shade(const ShadeArguments& arguments) {
   const Bsdf bsdf = bsdf_at_hit(arguments, normal, front);
   const ShadedVertex vertex{arguments.hit.get(&HitRecord::position), bsdf,
                             shares_light(arguments, bsdf.material), arrived};
-  continue_at(arguments, vertex, hit);
-  if (arguments.casts_shadow_rays) aim(arguments, vertex, hit);
+  const bool has_coverage = arguments.features.coverage;
+  const mask passes = has_coverage ? lets_segment_through(arguments, hit, front) : mask();
+  const mask scatters = has_coverage ? hit & !passes : hit;
+  continue_at(arguments, vertex, scatters);
+  if (has_coverage) pass_on(arguments, passes, arrived);
+  if (arguments.casts_shadow_rays) aim(arguments, vertex, scatters);
 }
 
 }  // namespace path_tracer

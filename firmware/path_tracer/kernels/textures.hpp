@@ -124,20 +124,26 @@ class TexturesAtHit {
   }
 
   /// The factor of a slot that is_colour().
-  Rgb colour(TextureSlot slot) const {
+  Rgb colour(TextureSlot slot) const { return three_channels(slot, texture_detail::linear_of_srgb); }
+  /// The three channels of another slot, in [0, 1]; 1 where the triangle has no such texture.
+  Rgb linear(TextureSlot slot) const { return three_channels(slot, value_of_code); }
+
+ private:
+  static poly<double> value_of_code(const poly<double>& code) { return code * (1.0 / 255.0); }
+
+  template <class Value>
+  Rgb three_channels(TextureSlot slot, const Value& value) const {
     const poly<double> one = 1.0;
     if (!sizes_.has_texture(slot)) return {one, one, one};
     const auto footprint = tail<ColourFootprint>(look_up_of(slot));
     const texture_detail::Shares of_texels = shares(slot);
     const auto filtered = [&](std::uint32_t ColourFootprint::*channel) {
-      return texture_detail::filter(footprint.get(channel), of_texels, texture_detail::linear_of_srgb);
+      return texture_detail::filter(footprint.get(channel), of_texels, value);
     };
-    const Rgb value{filtered(&ColourFootprint::red), filtered(&ColourFootprint::green),
+    const Rgb shown{filtered(&ColourFootprint::red), filtered(&ColourFootprint::green),
                     filtered(&ColourFootprint::blue)};
-    return cn::select(has_texture(slot), value, Rgb{one, one, one});
+    return cn::select(has_texture(slot), shown, Rgb{one, one, one});
   }
-
- private:
   poly<double> channel(TextureSlot slot, TexelFootprint ChannelFootprint::*part) const {
     if (!sizes_.has_texture(slot)) return 1.0;
     const auto footprint = tail<ChannelFootprint>(look_up_of(slot)).get(part);

@@ -165,12 +165,19 @@ struct BaseShares {
   poly<double> transmissive;
 };
 
+/// Reflectance of metal and varnish at normal incidence.
+inline Rgb base_at_normal(const Lobes& lobes, const Material& material, const BaseShares& shares) {
+  const Rgb metal = material.base_color * material.metallic;
+  const poly<double> varnish = shares.opaque * material.f0;
+  return lobes.varnish_tint ? metal + material.varnish_tint * varnish : plus(metal, varnish);
+}
+
 inline SpecularBase specular_base(const Lobes& lobes, const Material& material, const BaseShares& shares,
                                   const poly<double>& cos_viewer) {
   const poly<double> alpha = specular_alpha(lobes, material.roughness);
   return {alpha,
           lobes.rough_specular() ? ggx_size(alpha * alpha, cos_viewer) : poly<double>(0.0),
-          plus(material.base_color * material.metallic, shares.opaque * material.f0),
+          base_at_normal(lobes, material, shares),
           material.metallic + shares.opaque * material.f90,
           shares.transmissive,
           lobes.transmissive() ? dielectric_surface(lobes, material.eta, alpha) : DielectricSurface{}};

@@ -57,7 +57,8 @@ inline FacetSplit split_at_facet(const Bsdf& bsdf, const poly<double>& cosine) {
   const poly<double> fresnel =
       dielectric_fresnel(base.surface, cosine, refracted_cosine(base.surface, cosine));
   const Rgb reflectance = plus(opaque, base.transmissive * fresnel);
-  const Rgb transmitted = bsdf.material.base_color * (base.transmissive * (1.0 - fresnel));
+  const Rgb transmitted =
+      transmission_color(bsdf.config.lobes, bsdf.material) * (base.transmissive * (1.0 - fresnel));
   const poly<double> reflected = largest_channel(reflectance);
   const poly<double> sum = reflected + largest_channel(transmitted);
   const poly<double> refracted = base.surface.inverse_eta * base.surface.inverse_eta;

@@ -18,7 +18,7 @@ struct LobeDescription {
 };
 
 /// The one list of lobes. A lobe is added here, to Lobes and to bsdf*.hpp (docs/how-to/add-a-material.md).
-inline constexpr std::array<LobeDescription, 9> kLobeTable = {{
+inline constexpr std::array<LobeDescription, 11> kLobeTable = {{
     {"diffuse", &Lobes::diffuse, "Lambertian reflection below the specular one",
      "metallicFactor < 1, not fully transmissive", "Kd"},
     {"glossy", &Lobes::glossy, "GGX reflection by metal or varnish, with the light scattered several times",
@@ -36,6 +36,10 @@ inline constexpr std::array<LobeDescription, 9> kLobeTable = {{
     {"sheen", &Lobes::sheen, "fibres that stand off, seen at grazing angles", "KHR_materials_sheen", "Ps"},
     {"absorption", &Lobes::absorption, "coloured loss within a transmissive body", "KHR_materials_volume",
      "none"},
+    {"varnish_tint", &Lobes::varnish_tint, "colour of varnish's reflection at normal incidence",
+     "KHR_materials_specular, specularColorFactor", "Ks"},
+    {"transmission_tint", &Lobes::transmission_tint,
+     "colour of what passes, where some passes and it is not the base colour", "none", "Tf with d"},
 }};
 
 }  // namespace path_tracer

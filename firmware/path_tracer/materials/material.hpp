@@ -35,7 +35,14 @@ struct Material {
   poly<double> coat_roughness;  ///< square root of its alpha
   Rgb sheen_color;
   poly<double> sheen_roughness;  ///< square root of the width of sheen's distribution
+  Rgb varnish_tint;              ///< factor of f0, whose strongest channel is 1
+  Rgb transmission_color;        ///< in place of base_color, for what passes
 };
+
+/// Factor of what a transmissive surface lets through.
+inline const Rgb& transmission_color(const Lobes& lobes, const Material& material) {
+  return lobes.transmission_tint ? material.transmission_color : material.base_color;
+}
 
 /// Reflectance at normal incidence of a material with this index of refraction. Index 0 stands for total
 /// reflection (KHR_materials_ior).

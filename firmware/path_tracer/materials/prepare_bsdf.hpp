@@ -30,7 +30,7 @@ struct CosinePart {
 inline void add_frosted(const Lobes& lobes, const Material& material, const poly<double>& frosted,
                         CosineBase& base) {
   assign(base.multiple, lobes.glossy ? plus(base.multiple, frosted) : Rgb{frosted, frosted, frosted});
-  assign(base.behind, material.base_color * frosted);
+  assign(base.behind, transmission_color(lobes, material) * frosted);
   const poly<double> behind = largest_channel(base.behind);
   const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
   base.share_behind.assign_all_lanes(behind / keep_positive(front + behind));

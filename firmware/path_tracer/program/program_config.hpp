@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "firmware/path_tracer/program/built_for.hpp"
 #include "firmware/path_tracer/records/features.hpp"
 #include "firmware/path_tracer/records/traversal_record.hpp"
 
@@ -33,12 +34,6 @@ enum class Estimator : std::uint8_t {
   light,     ///< by shadow rays; by hits only where no shadow ray can, behind mirrors and glass
   mis,       ///< by both, weighed against each other (Veach and Guibas, SIGGRAPH 1995; power heuristic)
   per_lobe,  ///< diffuse surfaces by shadow rays, glossy ones by both
-};
-
-/// What the firmware is built for.
-enum class BuiltFor : std::uint8_t {
-  scene,    ///< the features of its scene (records/features.hpp)
-  anything  ///< every feature, whatever the scene has
 };
 
 /// Which hits are shaded together, and which lobes they are charged for.
@@ -89,7 +84,7 @@ struct ProgramConfig {
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   Estimator estimator = Estimator::per_lobe;
-  BuiltFor built_for = BuiltFor::scene;
+  int built_for = kBuiltForScene;  ///< a row of kBuiltForTable: the scene alone, or with more features
   Shading shading = Shading::present_lobes;
   std::uint64_t seed = 1;
   /// Pixels from one camera ray to the next, cyclic over the film; must have no common divisor with the

@@ -105,41 +105,55 @@ void write_empty_blocks(ProgramConfig& config, const OptionValue& value) {
   config.skips_empty_blocks = std::get<std::string>(value) == "skip";
 }
 
+Names built_for_names() {
+  Names names;
+  for (const ExtraFeature& feature : kBuiltForTable) names.emplace_back(feature.name);
+  return names;
+}
+OptionValue read_built_for(const ProgramConfig& config) {
+  return std::string(kBuiltForTable.at(std::size_t(config.built_for)).name);
+}
+void write_built_for(ProgramConfig& config, const OptionValue& value) {
+  const Names names = built_for_names();
+  const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
+  config.built_for = static_cast<int>(found - names.begin());
+}
+
 // Ranges end where slot numbers would overflow or more makes no sense, not where a chip's SRAM ends.
 constexpr std::int64_t kMaxSegments = 1 << 30;
 constexpr std::int64_t kMaxStride = 1 << 30;
 
 Options bins() {
-  return {
-      choice<&ProgramConfig::program>(
-          "program", Program::full, kProgramNames,
-          "what is timed: path segments; with a shadow ray each; with the radiance of finished paths"),
-      integer<&ProgramConfig::n>("n", "blocks", 1, {0, kMaxBuffers},
-                                 "blocks loaded ahead and saved behind; 0: none"),
-      {"buffer", "-", std::string("both"), Names(kBufferNames.begin(), kBufferNames.end()),
-       "what is n-buffered", &read_buffer, &write_buffer},
-      integer<&ProgramConfig::bin_blocks>("bin_blocks", "blocks", 8, {1, kMaxBinBlocks},
-                                          "length of each bin in blocks of one SIMD width"),
-      integer<&ProgramConfig::slot_vertices>(
-          "slot_vertices", "vertices", 16, {kVerticesPerLoad, kMaxSlotVertices, kVerticesPerLoad},
-          "vertices that a path slot holds; a longer path is folded into its radiance so far"),
-      {"shadow_rays", "-", std::string("facing"), Names{"all", "facing"},
-       "which shadow rays are cast: all, or those between a surface and a light that face each other",
-       &read_shadow_rays, &write_shadow_rays},
-      {"empty_blocks", "-", std::string("skip"), Names{"skip", "process"},
-       "blocks of slots without a path: left out, or processed like the others", &read_empty_blocks,
-       &write_empty_blocks},
-      choice<&ProgramConfig::built_for>(
-          "built_for", BuiltFor::scene, kBuiltForNames,
-          "what the firmware is built for: its scene, which pays for nothing else, or every lobe, texture "
-          "and kind of light"),
-      choice<&ProgramConfig::shading>(
-          "shading", Shading::present_lobes, kShadingNames,
-          "hits that are shaded together: blocks of slots, for every lobe or for those present; or bins "
-          "of hits, by their material's lobes, or by these and its textures"),
-      integer<&ProgramConfig::pixel_stride>(
-          "pixel_stride", "pixels", 1, {1, kMaxStride},
-          "from one camera ray to the next: 1 in order, more to shuffle; the image is the same")};
+  return {choice<&ProgramConfig::program>(
+              "program", Program::full, kProgramNames,
+              "what is timed: path segments; with a shadow ray each; with the radiance of finished paths"),
+          integer<&ProgramConfig::n>("n", "blocks", 1, {0, kMaxBuffers},
+                                     "blocks loaded ahead and saved behind; 0: none"),
+          {"buffer", "-", std::string("both"), Names(kBufferNames.begin(), kBufferNames.end()),
+           "what is n-buffered", &read_buffer, &write_buffer},
+          integer<&ProgramConfig::bin_blocks>("bin_blocks", "blocks", 8, {1, kMaxBinBlocks},
+                                              "length of each bin in blocks of one SIMD width"),
+          integer<&ProgramConfig::slot_vertices>(
+              "slot_vertices", "vertices", 16, {kVerticesPerLoad, kMaxSlotVertices, kVerticesPerLoad},
+              "vertices that a path slot holds; a longer path is folded into its radiance so far"),
+          {"shadow_rays", "-", std::string("facing"), Names{"all", "facing"},
+           "which shadow rays are cast: all, or those between a surface and a light that face each other",
+           &read_shadow_rays, &write_shadow_rays},
+          {"empty_blocks", "-", std::string("skip"), Names{"skip", "process"},
+           "blocks of slots without a path: left out, or processed like the others", &read_empty_blocks,
+           &write_empty_blocks},
+          {"built_for", "-", std::string(kBuiltForTable[kBuiltForScene].name), built_for_names(),
+           "what the firmware is built for: the features of its scene, which pays for nothing else, with one "
+           "more, "
+           "or anything",
+           &read_built_for, &write_built_for},
+          choice<&ProgramConfig::shading>(
+              "shading", Shading::present_lobes, kShadingNames,
+              "hits that are shaded together: blocks of slots, for every lobe or for those present; or bins "
+              "of hits, by their material's lobes, or by these and its textures"),
+          integer<&ProgramConfig::pixel_stride>(
+              "pixel_stride", "pixels", 1, {1, kMaxStride},
+              "from one camera ray to the next: 1 in order, more to shuffle; the image is the same")};
 }
 
 // The defaults give the least error for the time (`csx600 bench error`, Cornell box).

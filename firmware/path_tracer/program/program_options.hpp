@@ -19,7 +19,6 @@ inline constexpr std::array kProgramNames = {"segments", "direct", "full"};
 inline constexpr std::array kSamplerNames = {"philox", "sobol"};
 inline constexpr std::array kLightSamplingNames = {"area", "solid_angle"};
 inline constexpr std::array kEstimatorNames = {"light", "mis", "per_lobe"};
-inline constexpr std::array kBuiltForNames = {"scene", "anything"};
 inline constexpr std::array kShadingNames = {"every_lobe", "present_lobes", "material_bins", "texture_bins"};
 inline constexpr std::array kTraversalNames = {"brute_force", "temporary_bin", "refill",
                                                "lock_step",   "packets",       "shared_treelets"};
@@ -36,9 +35,6 @@ inline const char* name_of(LightSampling sampling) {
 }
 inline const char* name_of(Estimator estimator) {
   return kEstimatorNames.at(std::size_t(estimator));
-}
-inline const char* name_of(BuiltFor built_for) {
-  return kBuiltForNames.at(std::size_t(built_for));
 }
 inline const char* name_of(Shading shading) {
   return kShadingNames.at(std::size_t(shading));

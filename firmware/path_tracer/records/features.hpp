@@ -17,6 +17,8 @@ struct Lobes {
   bool coat = false;
   bool sheen = false;
   bool absorption = false;
+  bool varnish_tint = false;
+  bool transmission_tint = false;
 
   constexpr bool rough_specular() const { return glossy || rough_glass; }
   constexpr bool smooth_specular() const { return mirror || glass; }
@@ -33,11 +35,18 @@ struct Lobes {
 };
 
 /// What textures of materials multiply; a scene's textures are looked up for each of these that a material
-/// uses. Colours have sRGB texels of three channels, the others have one linear channel.
-enum class TextureSlot { reflectance, emission, metallic, roughness, transmission };
-inline constexpr int kTextureSlots = 5;
+/// uses. Colours have sRGB texels of three channels, a normal has three linear ones, the others have one.
+enum class TextureSlot { reflectance, emission, metallic, roughness, transmission, alpha, normal };
+inline constexpr int kTextureSlots = 7;
 constexpr bool is_colour(TextureSlot slot) {
   return slot == TextureSlot::reflectance || slot == TextureSlot::emission;
+}
+constexpr bool has_three_channels(TextureSlot slot) {
+  return is_colour(slot) || slot == TextureSlot::normal;
+}
+/// Whether shadow rays look the slot up, at what they hit.
+constexpr bool counts_for_shadow_rays(TextureSlot slot) {
+  return slot == TextureSlot::emission || slot == TextureSlot::alpha;
 }
 
 /// The slots that materials of a scene have textures for.
@@ -52,14 +61,13 @@ struct TextureSlots {
   constexpr bool looks_up(TextureSlot slot) const {
     return has(slot) && !(slot == TextureSlot::roughness && roughness_with_metallic);
   }
+  constexpr bool any_for_shadow_rays() const { return has(TextureSlot::emission) || has(TextureSlot::alpha); }
   constexpr bool any() const {
     bool any_slot = false;
     for (const bool uses_slot : uses) any_slot = any_slot || uses_slot;
     return any_slot;
   }
 };
-
-inline constexpr Lobes kEveryLobe{true, true, true, true, true, true, true, true, true};
 
 /// Lights that shadow rays are aimed at.
 struct LightKinds {
@@ -82,17 +90,21 @@ struct Features {
   TextureSlots textures;
   /// Kinds of materials that are shaded apart (Shading::material_bins); 1 where nothing tells them apart.
   int shading_kinds = 1;
+  bool coverage = false;          ///< surfaces that let rays through, at least in places
+  bool blended_coverage = false;  ///< some of them by chance
   /// Shadow rays and hits of lights are weighed against each other.
   bool multiple_importance = false;
 
   /// Whether hits and misses are looked up in images.
   constexpr bool looks_up() const { return textures.any() || lights.environment; }
+  /// Whether normals of shading differ from those of triangles.
+  constexpr bool shading_normals() const { return normals || textures.has(TextureSlot::normal); }
 
   /// Whether surfaces are diffuse, and light comes from triangles and arrives by shadow rays or by hits
   /// alone.
   constexpr bool plain() const {
-    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !multiple_importance &&
-           !lights.without_triangles();
+    return lobes.only_diffuse() && !environment && !normals && !textures.any() && !coverage &&
+           !multiple_importance && !lights.without_triangles();
   }
 };
 

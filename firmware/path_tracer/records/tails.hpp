@@ -14,6 +14,16 @@ struct ArrivalRecord {
   double distance = 0;
 };
 
+/// Behind a SurfaceRecord: where a surface is, and where it lets rays through.
+struct CoverageRecord {
+  double alpha = 1;   ///< which a texture may multiply
+  double cutoff = 0;  ///< the surface is where its alpha is no less; kByChance: with the probability alpha
+  std::int32_t front_only = 0;  ///< 1: rays from behind pass; of surfaces by chance
+  std::int32_t unused = 0;
+
+  static constexpr double kByChance = -1;
+};
+
 /// Behind a SurfaceRecord: a material that is not only diffuse (materials/material.hpp).
 struct MaterialRecord {
   double metallic = 0;
@@ -23,6 +33,14 @@ struct MaterialRecord {
   double transmission = 0;
   double ior = 1.5;       ///< index of refraction behind the front
   std::int32_t thin = 0;  ///< 1: transmits without refraction
+  std::int32_t unused = 0;
+};
+struct VarnishTintRecord {
+  vec3<double> tint{1, 1, 1};  ///< of the reflection at normal incidence; the strongest channel is 1
+};
+struct TransmissionTintRecord {
+  vec3<double> colour{};     ///< of what passes, if it is another than the base colour
+  std::int32_t is_base = 1;  ///< 1: it is the base colour
   std::int32_t unused = 0;
 };
 struct AbsorptionRecord {
@@ -60,6 +78,13 @@ struct BinnedHit {
   std::int32_t unused = 0;
 };
 
+/// Behind a SurfaceRecord: how a normal texture lies on the triangle.
+struct TangentRecord {
+  vec3<double> tangent{};  ///< along which the texture's columns grow; unit length, in the triangle's plane
+  double x_scale = 0;      ///< of what the texture says along the tangent
+  double y_scale = 0;      ///< and along normal x tangent; negative where the image is mirrored
+};
+
 /// Values of TextureRecord::wrap_x and wrap_y: what stands beyond an image's edge (glTF 2.0,
 /// section 3.8.4.5).
 enum class TextureWrap : std::int32_t { repeat, mirrored_repeat, clamp_to_edge };
@@ -86,8 +111,8 @@ struct TextureRecord {
 /// texels' 8-bit codes are, from the lowest byte: upper left, upper right, lower left, lower right.
 using TexelFootprint = std::uint32_t;
 
-/// In mono memory: footprints of a texel of slots with one channel, and with three. A request moves multiples
-/// of 8 bytes.
+/// In mono memory: footprints of a texel of slots with one channel, and of slots with three. A request moves
+/// multiples of 8 bytes.
 struct ChannelFootprint {
   TexelFootprint channel = 0;
   TexelFootprint roughness = 0;  ///< of metallic's slot, if TextureSlots::roughness_with_metallic
@@ -100,7 +125,7 @@ struct ColourFootprint {
 };
 
 constexpr int footprint_bytes(TextureSlot slot) {
-  return is_colour(slot) ? int{sizeof(ColourFootprint)} : int{sizeof(ChannelFootprint)};
+  return has_three_channels(slot) ? int{sizeof(ColourFootprint)} : int{sizeof(ChannelFootprint)};
 }
 
 /// In SRAM for each texture slot of the scene, from the choice of the texel to the filter; its footprint
@@ -121,12 +146,28 @@ struct DirectionRecord {
   double pdf = 0;  ///< by solid angle; infinity where no shadow ray competes with the segment
 };
 
+/// Behind a DirectionRecord: what the path has passed since the vertex that chose its direction.
+struct PassedRecord {
+  double distance = 0;
+};
+
+/// Behind a LightingRecord: what a shadow ray's random numbers depend on.
+struct ShadowNumbersRecord {
+  std::int32_t pixel = 0;
+  std::int32_t sample = 0;
+  std::int32_t depth = 0;
+  std::int32_t unused = 0;
+};
+
 /// Places of the tails from the start of their records, in bytes, and sizes of the records with tails.
 struct RecordSizes {
   int hit = sizeof(HitRecord);
   int surface = sizeof(SurfaceRecord);
   int scatter = sizeof(ScatterRecord);
   int path = sizeof(PathRecord);
+  int lighting = sizeof(LightingRecord);
+  int surface_of_shadow_ray = sizeof(SurfaceRecord);  ///< as much as shadow rays load
+  bool has_passed = false;                            ///< PassedRecord, in paths and scatter records
 
   bool path_has_tail() const { return path > int{sizeof(PathRecord)}; }
   bool hit_has_tail() const { return hit > int{sizeof(HitRecord)}; }
@@ -134,11 +175,15 @@ struct RecordSizes {
 
   static constexpr int kNone = 0;
   // In a SurfaceRecord; kNone if the scene has none of it.
+  int coverage = kNone;
   int material = kNone;
+  int varnish_tint = kNone;
+  int transmission_tint = kNone;
   int absorption = kNone;
   int coat = kNone;
   int sheen = kNone;
   int normal = kNone;
+  int tangent = kNone;
   int texture[kTextureSlots] = {};
   int aim = kNone;
   int shading_kind = kNone;
@@ -159,22 +204,35 @@ struct RecordSizes {
     shading_kind = append(features.shading_kinds > 1, sizeof(ShadingKindRecord));
     if (features.plain()) return;
     hit += int{sizeof(ArrivalRecord)};
-    scatter += int{sizeof(DirectionRecord)};
-    path += int{sizeof(DirectionRecord)};
+    has_passed = features.coverage && features.multiple_importance;
+    const int direction = int{sizeof(DirectionRecord)} + (has_passed ? int{sizeof(PassedRecord)} : 0);
+    scatter += direction;
+    path += direction;
+    if (features.blended_coverage) lighting += int{sizeof(ShadowNumbersRecord)};
+    const auto append_texture = [&](TextureSlot slot) {
+      const bool looks_up = features.textures.looks_up(slot);
+      texture[int(slot)] = append(looks_up, sizeof(TextureRecord));
+      look_up[int(slot)] = look_ups;
+      if (looks_up) look_ups += int{sizeof(TextureLookUp)} + footprint_bytes(slot);
+    };
+    // What shadow rays need comes first.
+    coverage = append(features.coverage, sizeof(CoverageRecord));
+    append_texture(TextureSlot::alpha);
+    if (features.coverage) surface_of_shadow_ray = surface;
     material = append(features.lobes.specular(), sizeof(MaterialRecord));
+    varnish_tint = append(features.lobes.varnish_tint, sizeof(VarnishTintRecord));
+    transmission_tint = append(features.lobes.transmission_tint, sizeof(TransmissionTintRecord));
     absorption = append(features.lobes.absorption, sizeof(AbsorptionRecord));
     coat = append(features.lobes.coat, sizeof(CoatRecord));
     sheen = append(features.lobes.sheen, sizeof(SheenRecord));
     normal = append(features.normals, sizeof(NormalRecord));
-    for (int slot = 0; slot < kTextureSlots; ++slot) {
-      const bool looks_up = features.textures.looks_up(TextureSlot(slot));
-      texture[slot] = append(looks_up, sizeof(TextureRecord));
-      look_up[slot] = look_ups;
-      if (looks_up) look_ups += int{sizeof(TextureLookUp)} + footprint_bytes(TextureSlot(slot));
-    }
+    tangent = append(features.textures.has(TextureSlot::normal), sizeof(TangentRecord));
+    for (int slot = 0; slot < kTextureSlots; ++slot)
+      if (TextureSlot(slot) != TextureSlot::alpha) append_texture(TextureSlot(slot));
     environment = look_ups;
     if (features.lights.environment) look_ups += int{sizeof(EnvironmentLookUp)};
     aim = append(features.multiple_importance, sizeof(AimRecord));
+    if (features.textures.has(TextureSlot::emission)) surface_of_shadow_ray = surface;
   }
 };
 

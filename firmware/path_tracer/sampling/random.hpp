@@ -7,7 +7,14 @@
 namespace path_tracer {
 
 /// The use of a group of four random numbers. It is part of the counter, so that uses never share numbers.
-enum class Purpose : std::uint32_t { camera, scatter, light, lobe };
+enum class Purpose : std::uint32_t { camera, scatter, light, lobe, coverage };
+
+/// A purpose for each of many things: the counter's word for it. @param number from 0, below 2^28
+inline cn::poly<std::uint32_t> purpose_for_each(Purpose purpose, const cn::poly<std::int32_t>& number) {
+  constexpr int kPurposeBits = 4;
+  return (cn::reinterpret_word<std::uint32_t>(number) << kPurposeBits) |
+         cn::poly<std::uint32_t>(static_cast<std::uint32_t>(purpose));
+}
 
 /// Four uniform numbers in (0, 1).
 struct Uniform4 {
@@ -59,14 +66,20 @@ inline cn::poly<double> uniform_of(const cn::poly<std::uint32_t>& word) {
 
 /// Random numbers as a function of their use: the same pixel, sample, depth and purpose give the same numbers
 /// wherever and whenever a path is traced.
+/// @param purpose a Purpose, or one of purpose_for_each()
+inline Uniform4 uniform4(std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
+                         const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
+                         const cn::poly<std::uint32_t>& purpose) {
+  const Words4 words = philox<kPhiloxRounds>(
+      seed, {{cn::reinterpret_word<std::uint32_t>(pixel), cn::reinterpret_word<std::uint32_t>(sample),
+              cn::reinterpret_word<std::uint32_t>(depth), purpose}});
+  return {{uniform_of(words.word[0]), uniform_of(words.word[1]), uniform_of(words.word[2]),
+           uniform_of(words.word[3])}};
+}
 inline Uniform4 uniform4(std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
                          const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
                          Purpose purpose) {
-  const Words4 words = philox<kPhiloxRounds>(
-      seed, {{cn::reinterpret_word<std::uint32_t>(pixel), cn::reinterpret_word<std::uint32_t>(sample),
-              cn::reinterpret_word<std::uint32_t>(depth), static_cast<std::uint32_t>(purpose)}});
-  return {{uniform_of(words.word[0]), uniform_of(words.word[1]), uniform_of(words.word[2]),
-           uniform_of(words.word[3])}};
+  return uniform4(seed, pixel, sample, depth, static_cast<std::uint32_t>(purpose));
 }
 
 }  // namespace path_tracer

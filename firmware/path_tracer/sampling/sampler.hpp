@@ -40,6 +40,18 @@ inline cn::poly<double> lobe_number(Sampler sampler, std::uint64_t seed, const c
   return uniform4(seed, pixel, sample, depth, Purpose::lobe).value[0];
 }
 
+/// Returns the number that decides whether a surface is there. Each face has its own, because a shadow ray
+/// may pass several at one depth.
+inline cn::poly<double> coverage_number(Sampler sampler, std::uint64_t seed,
+                                        const cn::poly<std::int32_t>& pixel,
+                                        const cn::poly<std::int32_t>& sample,
+                                        const cn::poly<std::int32_t>& depth,
+                                        const cn::poly<std::int32_t>& face) {
+  const cn::poly<std::uint32_t> purpose = purpose_for_each(Purpose::coverage, face);
+  if (sampler == Sampler::sobol) return sobol_single(sobol_point(seed, pixel, sample, depth, purpose));
+  return uniform4(seed, pixel, sample, depth, purpose).value[0];
+}
+
 /// A light, and a position on it.
 struct LightNumbers {
   cn::poly<std::int32_t> light;

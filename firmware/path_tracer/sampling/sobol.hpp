@@ -49,13 +49,19 @@ struct SobolPoint {
   Words4 scramblings;
 };
 
+/// @param purpose a Purpose, or one of purpose_for_each()
+inline SobolPoint sobol_point(std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
+                              const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
+                              const Word& purpose) {
+  const Words4 scramblings =
+      philox<kScramblingRounds>(seed, {{cn::reinterpret_word<std::uint32_t>(pixel), std::uint32_t{0},
+                                        cn::reinterpret_word<std::uint32_t>(depth), purpose}});
+  return {cn::reverse_bits(cn::reinterpret_word<std::uint32_t>(sample)), scramblings};
+}
 inline SobolPoint sobol_point(std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
                               const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
                               Purpose purpose) {
-  const Words4 scramblings = philox<kScramblingRounds>(
-      seed, {{cn::reinterpret_word<std::uint32_t>(pixel), std::uint32_t{0},
-              cn::reinterpret_word<std::uint32_t>(depth), static_cast<std::uint32_t>(purpose)}});
-  return {cn::reverse_bits(cn::reinterpret_word<std::uint32_t>(sample)), scramblings};
+  return sobol_point(seed, pixel, sample, depth, Word(static_cast<std::uint32_t>(purpose)));
 }
 
 struct UniformPair {

@@ -19,7 +19,10 @@ struct Bins {
     PolyField<MonoAddress> light_place;
 
     LaneMask segments() const { return live.without(shadow); }  ///< slots whose ray is a segment
-    LaneMask ready() const { return live.without(casts); }      ///< slots whose vertex is complete
+    LaneMask ended_shadow() const {
+      return shadow.without(casts);
+    }                                                       ///< slots whose shadow ray goes on no more
+    LaneMask ready() const { return live.without(casts); }  ///< slots whose vertex is complete
   };
   std::vector<Block> blocks;
 };

@@ -197,7 +197,7 @@ void BinnedIntersectionStage::locate_loads(std::uint64_t step, int group) {
   arguments.records[0] = {layout.intersection_bin.address, layout.sizes.hit};
   arguments.place[0] = to.hit_place;
   arguments.records[1] = has_shadow_rays(group)
-                             ? MonoRecords{layout.lighting_bin.address, int{sizeof(LightingRecord)}}
+                             ? MonoRecords{layout.lighting_bin.address, layout.sizes.lighting}
                              : MonoRecords{layout.path_bin.address, layout.sizes.path};
   arguments.place[1] = to.path_place;
   arguments.places = 2;
@@ -213,8 +213,8 @@ void BinnedIntersectionStage::prepare(std::uint64_t step, int group) {
                          RecallArguments{hits.surface_place, &hits.hit_something}, hits.live);
   load_records(step, group);
   const Features& features = context_.config.features;
-  const bool lights_look_up = features.lights.environment || features.textures.has(TextureSlot::emission);
-  if (has_shadow_rays(group) ? lights_look_up : features.looks_up()) load_all_texels(step, group);
+  const bool shadow_rays_look_up = features.lights.environment || features.textures.any_for_shadow_rays();
+  if (has_shadow_rays(group) ? shadow_rays_look_up : features.looks_up()) load_all_texels(step, group);
 }
 
 void BinnedIntersectionStage::locate_saves(std::uint64_t step, int group) {
@@ -231,7 +231,7 @@ void BinnedIntersectionStage::locate_saves(std::uint64_t step, int group) {
          to.result_place);
   if (context_.config.casts_shadow_rays()) {
     locate({layout.casts_bin.address, int{sizeof(MonoAddress)}}, to.casts_place);
-    locate({layout.lighting_bin.address, int{sizeof(LightingRecord)}}, to.lighting_place);
+    locate({layout.lighting_bin.address, layout.sizes.lighting}, to.lighting_place);
     if (!context_.config.uses_tree()) locate({layout.ray_bin.address, int{sizeof(RayRecord)}}, to.ray_place);
   }
   context_.machine.run(context_.kernels.locate_slot, arguments, rays(group).live);

@@ -12,8 +12,9 @@ int IntersectionStage::load_bytes(const ProgramConfig& config) {
 
 int IntersectionStage::save_bytes(const ProgramConfig& config) {
   const int bytes = RecordSizes(config.features).scatter;
-  return config.casts_shadow_rays() ? bytes + int{sizeof(LightingRecord)} + RayStore::room_bytes(config)
-                                    : bytes;
+  return config.casts_shadow_rays()
+             ? bytes + RecordSizes(config.features).lighting + RayStore::room_bytes(config)
+             : bytes;
 }
 
 IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
@@ -26,7 +27,7 @@ IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
   BufferCutter same_place(cutter);
   loads.path = cutter.take_bytes<PathRecord>(sizes.path);
   loads.light = cutter.take<LightRecord>();
-  loads.lighting = same_place.take<LightingRecord>();
+  loads.lighting = same_place.take_bytes<LightingRecord>(sizes.lighting);
   return loads;
 }
 
@@ -35,7 +36,7 @@ IntersectionStage::Saves IntersectionStage::saves(std::uint64_t step) const {
   BufferCutter same_place(cutter);
   Saves saves;
   saves.scatter = cutter.take_bytes<ScatterRecord>(context_.layout.sizes.scatter);
-  saves.lighting = cutter.take<LightingRecord>();
+  saves.lighting = cutter.take_bytes<LightingRecord>(context_.layout.sizes.lighting);
   saves.shadow_ray = ray_store_.take_room(cutter);
   saves.direct_light = same_place.take<DirectLightRecord>();
   return saves;
@@ -50,7 +51,7 @@ cn::MonoPlaces IntersectionStage::places(SlotRecord record, std::uint64_t /*step
       return block_of(layout.path_bin, block, layout.sizes.path);
     case SlotRecord::lighting:
     case SlotRecord::new_lighting:
-      return block_of(layout.lighting_bin, block);
+      return block_of(layout.lighting_bin, block, layout.sizes.lighting);
     case SlotRecord::scatter:
       return block_of(layout.scatter_bin, block, layout.sizes.scatter);
     case SlotRecord::direct_light:
@@ -75,21 +76,21 @@ void IntersectionStage::load_records(std::uint64_t step, int block) {
   if (!context_.config.casts_shadow_rays()) return;
   context_.loads.copy_m2p(step, block_of_slots(block), to.light.span(),
                           context_.machine.places_in(bin.light_place), segments);
-  load_slots(SlotRecord::lighting, step, block, to.lighting.span(), bin.shadow);
+  load_slots(SlotRecord::lighting, step, block, with_tail(to.lighting, sizes.lighting), bin.shadow);
 }
 
-/// A shadow ray needs no more of a tail than the texture of the light that it hit.
+/// A shadow ray needs no more of a tail than the coverage of what it hit and the texture of a light.
 void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
   const Loads to = loads(step);
   const int bytes = context_.layout.sizes.surface;
   const Bins::Block& bin = rays(block);
   const cn::MonoPlaces places = context_.machine.places_in(bin.surface_place);
-  const bool spares_tails = context_.config.casts_shadow_rays() && bytes > int{sizeof(SurfaceRecord)} &&
-                            !context_.config.features.textures.has(TextureSlot::emission);
+  const int bytes_of_shadow_ray = context_.layout.sizes.surface_of_shadow_ray;
+  const bool spares_tails = context_.config.casts_shadow_rays() && bytes > bytes_of_shadow_ray;
   const LaneMask with_tails = spares_tails ? bin.hit_something.without(bin.shadow) : bin.hit_something;
   context_.loads.copy_m2p(step, block_of_slots(block), with_tail(to.surface, bytes), places, with_tails);
   if (spares_tails)
-    context_.loads.copy_m2p(step, block_of_slots(block), to.surface.span(), places,
+    context_.loads.copy_m2p(step, block_of_slots(block), with_tail(to.surface, bytes_of_shadow_ray), places,
                             bin.hit_something.without(with_tails));
 }
 
@@ -132,9 +133,9 @@ void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot s
   arguments.look_up =
       PolyPointer<TextureLookUp>(from.look_ups.span().offset_bytes + sizes.look_up[int(slot)]);
   arguments.needs = &needs;
-  const bool is_for_lights = slot == TextureSlot::emission;
-  context_.machine.run(context_.kernels.look_up, arguments,
-                       is_for_lights ? bin.hit_something : bin.hit_something.without(bin.shadow));
+  context_.machine.run(
+      context_.kernels.look_up, arguments,
+      counts_for_shadow_rays(slot) ? bin.hit_something : bin.hit_something.without(bin.shadow));
   const cn::PolySpan look_up = arguments.look_up.span();
   context_.loads.copy_m2p(step, block_of_slots(block),
                           {look_up.offset_bytes + look_up.size_bytes, footprint_bytes(slot)},
@@ -200,6 +201,8 @@ void IntersectionStage::shade(const Loads& from, const ScatterArguments& argumen
 void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {
   const Loads from = loads(step);
   const Saves to = saves(step);
+  Bins::Block& bin = rays(block);
+  LaneMask goes_on;
   IlluminateArguments arguments;
   arguments.hit = from.hit;
   arguments.surface = from.surface;
@@ -209,7 +212,13 @@ void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {
   arguments.sizes = context_.layout.sizes;
   arguments.look_ups = from.look_ups;
   arguments.direct_light = to.direct_light;
-  context_.machine.run(context_.kernels.illuminate, arguments, rays(block).shadow);
+  arguments.features = context_.config.features;
+  arguments.sampler = context_.config.sampler;
+  arguments.seed = context_.config.seed;
+  arguments.shadow_ray = to.shadow_ray.ray;
+  arguments.goes_on = &goes_on;
+  context_.machine.run(context_.kernels.illuminate, arguments, bin.shadow);
+  bin.casts = bin.casts.with(goes_on);
 }
 
 void IntersectionStage::save(std::uint64_t step, int block) {
@@ -219,8 +228,10 @@ void IntersectionStage::save(std::uint64_t step, int block) {
              bin.segments());
   if (!context_.config.casts_shadow_rays()) return;
   ray_store_.save(context_.saves, step, slots(step, block), from.shadow_ray, bin.light_place, bin.casts);
-  save_slots(SlotRecord::new_lighting, step, block, from.lighting.span(), bin.casts);
-  save_slots(SlotRecord::direct_light, step, block, from.direct_light.span(), bin.shadow);
+  // A shadow ray that goes on has its record there already, and has found no light yet.
+  save_slots(SlotRecord::new_lighting, step, block, with_tail(from.lighting, context_.layout.sizes.lighting),
+             bin.casts.without(bin.shadow));
+  save_slots(SlotRecord::direct_light, step, block, from.direct_light.span(), bin.ended_shadow());
 }
 
 }  // namespace path_tracer

@@ -46,7 +46,7 @@ void PathStage::load(std::uint64_t step, int block) {
   load_block(step, block, to.path, context_.layout.path_bin, ready, sizes.path);
   load_block(step, block, to.scatter, context_.layout.scatter_bin, ready, sizes.scatter);
   if (context_.config.casts_shadow_rays())
-    load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.shadow);
+    load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.ended_shadow());
 }
 
 void PathStage::process(std::uint64_t step, int block) {
@@ -149,6 +149,7 @@ void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   arguments.remaining = started;
   arguments.next_path = to.path;
   arguments.path_has_tail = context_.layout.sizes.path_has_tail();
+  arguments.has_passed = context_.layout.sizes.has_passed;
   arguments.ray = to.ray.ray;
   arguments.live = &continued_;
   context_.machine.run(context_.kernels.continue_paths, arguments, appended_);

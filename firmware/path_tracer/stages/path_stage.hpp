@@ -10,7 +10,8 @@ namespace path_tracer {
 
 /// Path stage: appends the vertex, and generates the next camera ray in the slot of each path that ended
 /// (kernels/camera_rays.hpp). Lists the paths that wait for their radiance, packed by ascending numbers. A
-/// slot whose shadow ray is still to be cast waits unchanged.
+/// slot whose shadow ray is still to be cast, or goes on behind a surface that let it through, waits
+/// unchanged.
 class PathStage : public Stage {
  public:
   /// @param rays where camera rays and segments go

@@ -43,8 +43,8 @@ double mean(const std::vector<double>& values) {
   return sum / double(values.size());
 }
 
-// The authors' program has the white and the inverse of the matrix with ten digits.
-constexpr double kTenDigits = 1e-8;
+// The authors' program has the white and the inverse of the matrix in nine digits, which differences amplify.
+constexpr double kNineDigits = 5e-8;
 
 TEST(Flip, IsZeroOfEqualPictures) {
   for (const double value : flip(pattern(), pattern())) EXPECT_EQ(value, 0);
@@ -62,19 +62,19 @@ TEST(Flip, PlainPicturesOfAnySizeHaveTheAuthorsValues) {
   for (const FilmSize size : {FilmSize{1, 1}, FilmSize{8, 8}, FilmSize{3, 50}})
     for (const auto& pair : pairs)
       for (const double value : flip(plain(size, pair.a), plain(size, pair.b)))
-        EXPECT_NEAR(value, pair.value, kTenDigits);
+        EXPECT_NEAR(value, pair.value, kNineDigits);
 }
 
 /// The same program's mean and three pixels of the pattern, at the default distance and at half of it.
 TEST(Flip, APatternHasTheAuthorsValues) {
   const std::vector<double> near = flip(changed_pattern(), pattern());
-  EXPECT_NEAR(mean(near), 0.479973991969, kTenDigits);
-  EXPECT_NEAR(near[0], 0.524432526991, kTenDigits);
-  EXPECT_NEAR(near[7 * 24 + 11], 0.453552040213, kTenDigits);
-  EXPECT_NEAR(near[15 * 24 + 23], 0.928007874527, kTenDigits);
+  EXPECT_NEAR(mean(near), 0.479973991969, kNineDigits);
+  EXPECT_NEAR(near[0], 0.524432526991, kNineDigits);
+  EXPECT_NEAR(near[7 * 24 + 11], 0.453552040213, kNineDigits);
+  EXPECT_NEAR(near[15 * 24 + 23], 0.928007874527, kNineDigits);
   const std::vector<double> far = flip(changed_pattern(), pattern(), 30);
-  EXPECT_NEAR(mean(far), 0.488962406257, kTenDigits);
-  EXPECT_NEAR(far[15 * 24 + 23], 0.953737065037, kTenDigits);
+  EXPECT_NEAR(mean(far), 0.488962406257, kNineDigits);
+  EXPECT_NEAR(far[15 * 24 + 23], 0.953737065037, kNineDigits);
 }
 
 TEST(Flip, DoesNotDependOnTheOrder) {

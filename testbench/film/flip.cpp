@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <stdexcept>
 
 namespace testbench {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// One value of every pixel.
 using Plane = std::vector<double>;
@@ -107,7 +106,8 @@ class ContrastSensitivity {
  public:
   explicit ContrastSensitivity(double pixels_per_degree)
       : pixels_per_degree_(pixels_per_degree),
-        radius_(int(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree))) {}
+        radius_(int(std::ceil(3 * std::sqrt(kWidest / (2 * glm::pi<double>() * glm::pi<double>())) *
+                              pixels_per_degree))) {}
 
   std::vector<glm::dvec3> filtered(const std::vector<glm::dvec3>& opponent, FilmSize size) const {
     // The paper's table 1: a and b of a sqrt(pi/b) exp(-pi^2 x^2 / b).
@@ -132,7 +132,7 @@ class ContrastSensitivity {
   Kernel kernel(const Gaussian& gaussian) const {
     return kernel_of(radius_, [&](double x) {
       const double degrees = x / pixels_per_degree_;
-      return std::exp(-kPi * kPi * degrees * degrees / gaussian.b);
+      return std::exp(-glm::pi<double>() * glm::pi<double>() * degrees * degrees / gaussian.b);
     });
   }
 
@@ -142,7 +142,7 @@ class ContrastSensitivity {
     double total = 0;
     for (const Gaussian& gaussian : gaussians) {
       const double one_row = sum(kernel(gaussian));
-      weights.push_back(gaussian.a * std::sqrt(kPi / gaussian.b) * one_row * one_row);
+      weights.push_back(gaussian.a * std::sqrt(glm::pi<double>() / gaussian.b) * one_row * one_row);
       total += weights.back();
     }
     for (std::size_t i = 0; i < gaussians.size(); ++i) {
@@ -158,12 +158,13 @@ class ContrastSensitivity {
 };
 
 /// How strongly edges and points stand out.
-struct Features {
+struct EdgesAndPoints {
   Plane edges;
   Plane points;
 };
 
-Features features_of(const std::vector<glm::dvec3>& opponent, FilmSize size, double pixels_per_degree) {
+EdgesAndPoints edges_and_points(const std::vector<glm::dvec3>& opponent, FilmSize size,
+                                double pixels_per_degree) {
   constexpr double width_degrees = 0.082;  // w of the paper: the eye's own filter for edges
   const double deviation = 0.5 * width_degrees * pixels_per_degree;
   const int radius = int(std::ceil(3 * deviation));
@@ -186,7 +187,7 @@ Features features_of(const std::vector<glm::dvec3>& opponent, FilmSize size, dou
 /// A picture in the spaces in which it is compared.
 struct Seen {
   std::vector<glm::dvec3> colours;  ///< filtered, Hunt-adjusted L*a*b*
-  Features features;
+  EdgesAndPoints features;
 };
 
 Seen seen(const DisplayImage& image, double pixels_per_degree) {
@@ -195,7 +196,7 @@ Seen seen(const DisplayImage& image, double pixels_per_degree) {
   std::vector<glm::dvec3> opponent;
   for (const glm::dvec3& rgb : image.rgb) opponent.push_back(to_opponent(to_xyz * rgb));
   Seen result;
-  result.features = features_of(opponent, image.size, pixels_per_degree);
+  result.features = edges_and_points(opponent, image.size, pixels_per_degree);
   for (const glm::dvec3& colour : ContrastSensitivity(pixels_per_degree).filtered(opponent, image.size)) {
     const glm::dvec3 rgb = glm::clamp(to_rgb * from_opponent(colour), 0.0, 1.0);
     result.colours.push_back(to_hunt_lab(to_xyz * rgb));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
 #include <vector>
 
 #include "testbench/film/film.hpp"
@@ -20,7 +21,7 @@ DisplayImage display_image(FilmSize size, const std::vector<double>& rgb);
 
 /// Pixels in a degree of the field of view, in the middle of a display that is 0.7 m wide, has 3840 pixels in
 /// a row and is seen from 0.7 m: the example of the FLIP paper.
-inline constexpr double kPixelsPerDegree = 3840 / 0.7 * 0.7 * 3.14159265358979323846 / 180;
+inline constexpr double kPixelsPerDegree = 3840 / 0.7 * 0.7 * glm::pi<double>() / 180;
 
 /// How visible the difference of two pictures of one size is when they alternate in one place, 0 (not) to 1
 /// for each pixel: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference

@@ -14,6 +14,7 @@ inline constexpr const char* kSeedAttribute = "csx600.seed";
 void add_bench_reference_command(CLI::App& bench);
 void add_bench_error_command(CLI::App& bench);
 void add_bench_skips_command(CLI::App& bench);
+void add_bench_image_command(CLI::App& bench);
 void add_bench_speed_command(CLI::App& bench);
 void add_bench_timing_command(CLI::App& bench);
 

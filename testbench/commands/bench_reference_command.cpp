@@ -2,11 +2,13 @@
 #include <cstdio>
 #include <memory>
 
+#include "testbench/benchmark/error_run.hpp"
 #include "testbench/commands/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/firmware_options.hpp"
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"
+#include "testbench/film/image_agreement.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/run/render_parts.hpp"
 #include "testbench/scene_file/scene_file.hpp"
@@ -29,23 +31,26 @@ struct BenchReferenceCommand {
   LevelOption level;
   FirmwareOptions firmware;
   int jobs = 1;
+  int check_samples = 0;  ///< 0: no check
 
   void run();
 
  private:
-  RenderResult render(const Scene& loaded) const;
+  RenderResult render(const Scene& loaded, const RenderOptions& of, const char* what) const;
+  RenderOptions second_estimator() const;
+  void check(const Scene& loaded, const Film& reference) const;
 };
 
-RenderResult BenchReferenceCommand::render(const Scene& loaded) const {
+RenderResult BenchReferenceCommand::render(const Scene& loaded, const RenderOptions& of,
+                                           const char* what) const {
   RenderResult result{Film(loaded.film, film_scale(loaded))};
-  const std::vector<path_tracer::Work> parts = split_work(options.work, kSamplesOfPart);
-  ProgressBar bar("bench reference");
+  const std::vector<path_tracer::Work> parts = split_work(of.work, kSamplesOfPart);
+  ProgressBar bar(what);
   for (std::size_t next = 0; next < parts.size();) {
     const std::size_t last = std::min(parts.size(), next + std::size_t(jobs));
     const auto begin = parts.begin();
-    for (const PartialRender& part :
-         render_parts(loaded, options, MachineKind::native,
-                      {begin + std::ptrdiff_t(next), begin + std::ptrdiff_t(last)})) {
+    for (const PartialRender& part : render_parts(
+             loaded, of, MachineKind::native, {begin + std::ptrdiff_t(next), begin + std::ptrdiff_t(last)})) {
       result.film.merge(part.film);
       result.counts.segments += part.segments;
       result.cpu_seconds += part.cpu_seconds;
@@ -56,6 +61,25 @@ RenderResult BenchReferenceCommand::render(const Scene& loaded) const {
   return result;
 }
 
+/// Light found by hits only, by other random numbers.
+RenderOptions BenchReferenceCommand::second_estimator() const {
+  RenderOptions second = options;
+  second.program.program = path_tracer::Program::segments;
+  second.program.seed = options.program.seed + 1;
+  second.work.samples = check_samples;
+  return second;
+}
+
+void BenchReferenceCommand::check(const Scene& loaded, const Film& reference) const {
+  if (check_samples == 0) return;
+  const RenderResult second = render(loaded, second_estimator(), "bench reference: second estimator");
+  const ImageAgreement agreement = agreement_of(reference, second.film);
+  std::printf("against %d samples a pixel that find light by hits only:\n%s", check_samples,
+              agreement.text().c_str());
+  if (!agreement.holds())
+    throw RunError(loaded.name + ": shadow rays and hits give different images; nothing was written");
+}
+
 void BenchReferenceCommand::run() {
   outputs.require_writable();
   size.require_valid();
@@ -63,7 +87,9 @@ void BenchReferenceCommand::run() {
   options.level = level.level();
   const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded));
-  const RenderResult result = render(loaded);
+  options.program = program_for(loaded, options.chip, options.program);
+  const RenderResult result = render(loaded, options, "bench reference");
+  check(loaded, result.film);
   std::map<std::string, std::string> attributes = render_provenance({scene.path(), options, true}, result);
   attributes[kSeedAttribute] = std::to_string(options.program.seed);
   const std::string& exr = outputs.path("--output");
@@ -91,6 +117,12 @@ void add_bench_reference_command(CLI::App& bench) {
   state->outputs.add_to(command, "-o,--output", "OpenEXR file to write").required();
   in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 2, 1 << 30)
       ->capture_default_str();
+  in_range(
+      command.add_option("--check-samples", state->check_samples,
+                         "Paths a pixel of a second image, whose paths find light by hits only; where the "
+                         "two differ by more than their noise, the command fails"),
+      2, 1 << 30)
+      ->default_str("none");
   state->size.add_to(command);
   state->firmware.add_to(command, state->options.program, *path_tracer::find_option("seed"));
   add_jobs_option(command, state->jobs);

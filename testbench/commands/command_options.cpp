@@ -18,6 +18,12 @@
 #include "testbench/system/standard_output.hpp"
 
 namespace testbench {
+namespace {
+
+constexpr const char* kWhatASceneIs =
+    "Directory with a scene.toml, a .toml file, or a mesh (.obj, .ply, .gltf, .glb)";
+
+}  // namespace
 
 void SetOptions::add_to(CLI::App& command) {
   command.add_option("--set", settings_, "One parameter of the chip, key=value; may be repeated")
@@ -98,11 +104,7 @@ void ReachOption::add_to(CLI::App& command) {
 }
 
 void SceneArgument::add_to(CLI::App& command) {
-  CLI::Option* const argument =
-      command
-          .add_option("scene", path_,
-                      "Directory with a scene.toml, a .toml file, or a mesh (.obj, .ply, .gltf, .glb)")
-          ->type_name("SCENE");
+  CLI::Option* const argument = command.add_option("scene", path_, kWhatASceneIs)->type_name("SCENE");
   if (path_.empty())
     argument->required();
   else
@@ -111,6 +113,15 @@ void SceneArgument::add_to(CLI::App& command) {
 }
 
 Scene SceneArgument::load_other(const std::string& path) const {
+  return load_scene(path, reach_.is_outside_allowed());
+}
+
+void SceneArguments::add_to(CLI::App& command) {
+  command.add_option("scene", paths_, kWhatASceneIs)->type_name("SCENE")->required();
+  reach_.add_to(command);
+}
+
+Scene SceneArguments::load(const std::string& path) const {
   return load_scene(path, reach_.is_outside_allowed());
 }
 

@@ -100,6 +100,19 @@ class SceneArgument {
   ReachOption reach_;
 };
 
+/// One scene or more as the command's arguments, and --allow-outside.
+class SceneArguments {
+ public:
+  void add_to(CLI::App& command);
+  const std::vector<std::string>& paths() const { return paths_; }
+  /// Throws InputError.
+  Scene load(const std::string& path) const;
+
+ private:
+  std::vector<std::string> paths_;
+  ReachOption reach_;
+};
+
 /// --size: the film of a scene.
 class SizeOption {
  public:

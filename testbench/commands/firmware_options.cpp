@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <string>
 #include <variant>
 
@@ -26,6 +27,35 @@ std::string sentence(std::string text) {
   return text;
 }
 
+/// Adds one option whose text, or each of whose `pieces` of text, must be a value that is allowed.
+CLI::Option& add_option(CLI::App& command, const ProgramOption& option, const ProgramConfig& defaults,
+                        const std::function<std::vector<std::string>(const std::string&)>& pieces,
+                        const std::function<void(const std::string&)>& write) {
+  const auto error_of = [&option, pieces](const std::string& text) -> std::string {
+    for (const std::string& piece : pieces(text))
+      if (!value_of(option, piece)) return "found '" + piece + "', allowed is " + allowed_text(option);
+    return "";
+  };
+  return *command
+              .add_option_function<std::string>(command_line_name(option), write, sentence(option.meaning))
+              ->check(error_of, "")
+              ->type_name(value_hint(option))
+              ->default_str(option.chosen.empty() ? path_tracer::value_text(option.read(defaults))
+                                                  : option.chosen)
+              ->group("Firmware: " + std::string(name_of(option.group)));
+}
+
+/// "light", "mis" of "light,mis"; a comma at the end leaves an empty piece.
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> pieces{""};
+  for (const char c : text)
+    if (c == ',')
+      pieces.emplace_back();
+    else
+      pieces.back() += c;
+  return pieces;
+}
+
 }  // namespace
 
 std::string command_line_name(const ProgramOption& option) {
@@ -42,18 +72,38 @@ void FirmwareOptions::add_to(CLI::App& command, ProgramConfig& program,
 }
 
 void FirmwareOptions::add_to(CLI::App& command, ProgramConfig& program, const ProgramOption& option) {
-  const auto write = [this, &program, &option](const std::string& text) {
+  const auto whole = [](const std::string& text) { return std::vector<std::string>{text}; };
+  add_option(command, option, program, whole, [this, &program, &option](const std::string& text) {
     option.write(program, *value_of(option, text));
     given_.insert(option.name);
-  };
-  const auto error_of = [&option](const std::string& text) {
-    return value_of(option, text) ? "" : "found '" + text + "', allowed is " + allowed_text(option);
-  };
-  command.add_option_function<std::string>(command_line_name(option), write, sentence(option.meaning))
-      ->check(error_of, "")
-      ->type_name(value_hint(option))
-      ->default_str(option.chosen.empty() ? path_tracer::value_text(option.read(program)) : option.chosen)
-      ->group("Firmware: " + std::string(name_of(option.group)));
+  });
+}
+
+void FirmwareLists::add_to(CLI::App& command, const ProgramConfig& defaults,
+                           const std::vector<const ProgramOption*>& options) {
+  for (const ProgramOption* const option : options) {
+    CLI::Option& added =
+        add_option(command, *option, defaults, split_list, [this, option](const std::string& text) {
+          std::vector<path_tracer::OptionValue> values;
+          for (const std::string& piece : split_list(text)) values.push_back(*value_of(*option, piece));
+          lists_.emplace_back(option, values);
+        });
+    added.type_name(added.get_type_name() + ",...");
+  }
+}
+
+std::vector<ProgramConfig> FirmwareLists::product(const ProgramConfig& defaults) const {
+  std::vector<ProgramConfig> programs{defaults};
+  for (const auto& [option, values] : lists_) {
+    std::vector<ProgramConfig> longer;
+    for (const ProgramConfig& program : programs)
+      for (const path_tracer::OptionValue& value : values) {
+        longer.push_back(program);
+        option->write(longer.back(), value);
+      }
+    programs = std::move(longer);
+  }
+  return programs;
 }
 
 }  // namespace testbench

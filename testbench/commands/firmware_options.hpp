@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <initializer_list>
+#include <utility>
+#include <vector>
 
 #include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/run/traversal_choice.hpp"
@@ -25,6 +27,20 @@ class FirmwareOptions {
 
  private:
   GivenOptions given_;
+};
+
+/// The firmware's options on the command line of a command that compares them: each takes a list,
+/// "light,mis".
+class FirmwareLists {
+ public:
+  void add_to(CLI::App& command, const path_tracer::ProgramConfig& defaults,
+              const std::vector<const path_tracer::ProgramOption*>& options);
+
+  /// The defaults with every combination of the values given; the lists given last vary fastest.
+  std::vector<path_tracer::ProgramConfig> product(const path_tracer::ProgramConfig& defaults) const;
+
+ private:
+  std::vector<std::pair<const path_tracer::ProgramOption*, std::vector<path_tracer::OptionValue>>> lists_;
 };
 
 }  // namespace testbench

@@ -3,33 +3,57 @@
 #include <cmath>
 #include <limits>
 
+#include "testbench/film/flip.hpp"
+
 namespace testbench {
 
-ImageError image_error(const Film& film, const ExrFilm& reference, const std::vector<bool>& counts) {
+namespace {
+
+/// Mean over the pixels that count.
+double mean_flip(const std::vector<double>& rgb, const ExrFilm& reference, const std::vector<bool>& counts) {
+  const FilmSize size{reference.width, reference.height};
+  const std::vector<double> truth(reference.rgb.begin(), reference.rgb.end());
+  const std::vector<double> map = flip(display_image(size, rgb), display_image(size, truth));
+  double sum = 0;
+  double pixels = 0;
+  for (std::size_t pixel = 0; pixel < map.size(); ++pixel) {
+    if (!counts[pixel]) continue;
+    sum += map[pixel];
+    ++pixels;
+  }
+  return sum / pixels;
+}
+
+}  // namespace
+
+ImageError image_error(const std::vector<double>& rgb, const ExrFilm& reference,
+                       const std::vector<bool>& counts) {
   ImageError error;
   double sums[3] = {0, 0, 0};
   double reference_sums[3] = {0, 0, 0};
   double values = 0;
-  for (int pixel = 0; pixel < film.pixel_count(); ++pixel) {
-    if (!counts[static_cast<std::size_t>(pixel)]) continue;
-    const glm::dvec3 mean = film.mean(pixel);
-    for (int channel = 0; channel < 3; ++channel) {
-      const std::size_t index = 3 * static_cast<std::size_t>(pixel) + static_cast<std::size_t>(channel);
-      const double truth = reference.rgb[index];
-      const double difference = mean[channel] - truth;
-      const double squared = difference * difference - double(reference.variance[index]);
-      error.mse += squared;
-      error.relative_mse += squared / (truth * truth + ImageError::kRelativeOffset);
-      sums[channel] += mean[channel];
-      reference_sums[channel] += truth;
-      ++values;
-    }
+  for (std::size_t index = 0; index < rgb.size(); ++index) {
+    if (!counts[index / 3]) continue;
+    const double truth = reference.rgb[index];
+    const double difference = rgb[index] - truth;
+    const double squared = difference * difference - double(reference.variance[index]);
+    error.mse += squared;
+    error.relative_mse += squared / (truth * truth + ImageError::kRelativeOffset);
+    sums[index % 3] += rgb[index];
+    reference_sums[index % 3] += truth;
+    ++values;
   }
   error.mse /= values;
   error.relative_mse /= values;
   for (int channel = 0; channel < 3; ++channel)
-    error.mean_bias[channel] = sums[channel] / reference_sums[channel] - 1;
+    error.mean_bias[channel] = reference_sums[channel] > 0 ? sums[channel] / reference_sums[channel] - 1
+                                                           : std::numeric_limits<double>::quiet_NaN();
+  error.flip = mean_flip(rgb, reference, counts);
   return error;
+}
+
+ImageError image_error(const Film& film, const ExrFilm& reference, const std::vector<bool>& counts) {
+  return image_error(film.rgb(), reference, counts);
 }
 
 double log_log_slope(const std::vector<double>& x, const std::vector<double>& y) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <string>
 
+#include "testbench/run/energy.hpp"
 #include "testbench/system/processes.hpp"
 
 namespace testbench {
@@ -14,14 +14,20 @@ namespace {
 struct PartHeader {
   std::uint64_t segments = 0;
   double cpu_seconds = 0;
-  double simulated_seconds = std::numeric_limits<double>::quiet_NaN();  ///< NaN: none
+  bool is_of_chip = false;
+  double simulated_seconds = 0;
+  double joules = 0;
 };
 
 std::string encode(const RenderResult& result) {
   PartHeader header;
   header.segments = result.counts.segments;
   header.cpu_seconds = result.cpu_seconds;
-  if (result.chip) header.simulated_seconds = result.chip->seconds();
+  header.is_of_chip = result.chip.has_value();
+  if (header.is_of_chip) {
+    header.simulated_seconds = result.chip->seconds();
+    header.joules = energy_of(*result.chip).joules();
+  }
   std::string bytes(sizeof(header), '\0');
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes + result.film.bytes();
@@ -33,8 +39,12 @@ PartialRender decode(const Scene& scene, FilmSums sums, const std::string& bytes
   PartialRender part{Film::from_bytes(scene.film, film_scale(scene), sums, bytes.substr(sizeof(header))),
                      header.segments,
                      header.cpu_seconds,
+                     {},
                      {}};
-  if (header.simulated_seconds == header.simulated_seconds) part.simulated_seconds = header.simulated_seconds;
+  if (header.is_of_chip) {
+    part.simulated_seconds = header.simulated_seconds;
+    part.joules = header.joules;
+  }
   return part;
 }
 

@@ -13,6 +13,7 @@ struct PartialRender {
   std::uint64_t segments = 0;
   double cpu_seconds = 0;                   ///< spent on rendering
   std::optional<double> simulated_seconds;  ///< of a run on the chip
+  std::optional<double> joules;             ///< of a run on the chip: chip and memory
 };
 
 enum class MachineKind : std::uint8_t { native, chip };

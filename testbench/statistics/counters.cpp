@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "testbench/run/render.hpp"
-#include "testbench/statistics/energy.hpp"
+#include "testbench/run/energy.hpp"
 #include "testbench/system/simulator_time.hpp"
 
 namespace testbench {

@@ -11,7 +11,7 @@
 #include "testbench/paper/paper.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/statistics/counters.hpp"
-#include "testbench/statistics/energy.hpp"
+#include "testbench/run/energy.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/roofline.hpp"
 #include "testbench/statistics/statistics_file.hpp"

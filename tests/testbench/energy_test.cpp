@@ -1,4 +1,4 @@
-#include "testbench/statistics/energy.hpp"
+#include "testbench/run/energy.hpp"
 #include "model/csx600.hpp"
 
 #include <gtest/gtest.h>

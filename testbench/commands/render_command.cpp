@@ -8,6 +8,7 @@
 #include "testbench/commands/firmware_options.hpp"
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"
+#include "testbench/commands/sampling_options.hpp"
 #include "testbench/commands/wave_options.hpp"
 #include "testbench/film/black_film.hpp"
 #include "testbench/film/image_file.hpp"
@@ -37,6 +38,7 @@ struct RenderCommand {
   OutputFiles outputs;
   bool statistics_text_wanted = false;
   ObservationOption observation;
+  ImportanceOption importance;
 
   void run();
   void run_on_ranks(Ranks& ranks);
@@ -44,6 +46,8 @@ struct RenderCommand {
  private:
   RenderRequest make_request() const;
   std::string choose_tree_for(const Scene& loaded, RenderOptions& of) const;
+  std::vector<InputName> inputs(const Scene& loaded) const;
+  void list_samples_for(const Scene& loaded, RenderRequest& request) const;
   void write_image(const Film& film, const std::map<std::string, std::string>& provenance) const;
 };
 
@@ -69,13 +73,34 @@ std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& o
   return choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of.program);
 }
 
+std::vector<InputName> RenderCommand::inputs(const Scene& loaded) const {
+  std::vector<InputName> inputs = inputs_of(chip, loaded);
+  inputs.push_back(importance.input());
+  return inputs;
+}
+
+/// The paths that an importance map asks for.
+void RenderCommand::list_samples_for(const Scene& loaded, RenderRequest& request) const {
+  if (!importance.is_given()) return;
+  request.importance = importance.file();
+  const SampleCounts counts =
+      counts_of(importance.means(loaded.film, request.options.work.samples), request.options.program.seed);
+  require_list_memory(total(counts), request.options.chip);
+  request.options.camera_samples =
+      list_samples(SampleCounts(counts.size(), 0), counts, request.options.program.pixel_stride);
+}
+
 void RenderCommand::write_image(const Film& film,
                                 const std::map<std::string, std::string>& provenance) const {
   if (!outputs.path("--exr").empty()) write_exr(outputs.path("--exr"), film, provenance);
   if (!outputs.path("--png").empty()) write_png(outputs.path("--png"), film);
 }
 
-void note_if_black(const Scene& loaded, const Film& film) {
+void print_film_notes(const Scene& loaded, const Film& film) {
+  const int without = film.samples().pixels_without;
+  if (without > 0)
+    print_note(std::to_string(without) + " of " + std::to_string(film.pixel_count()) +
+               " pixels have no path and are black");
   if (is_black(film)) print_note("every pixel is black: " + why_black(loaded));
 }
 
@@ -91,8 +116,9 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
     if (ranks.is_first()) outputs.require_writable(observation.outputs());
     size.require_valid();
     loaded = size.resized(scene.load());
-    if (ranks.is_first()) outputs.require_no_input(inputs_of(chip, *loaded));
+    if (ranks.is_first()) outputs.require_no_input(inputs(*loaded));
     request.traversal_reason = choose_tree_for(*loaded, request.options);
+    list_samples_for(*loaded, request);
   } catch (const InputError& wrong) {
     error = wrong.what();
   }
@@ -119,7 +145,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
   write_image(render->film, provenance);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
   print_notes(loaded->notes);
-  note_if_black(*loaded, render->film);
+  print_film_notes(*loaded, render->film);
   std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments",
               printable(loaded->name).c_str(), loaded->film.width, loaded->film.height,
               request.options.work.samples, ranks.size(), static_cast<unsigned long long>(render->segments));
@@ -136,8 +162,9 @@ void RenderCommand::run() {
   require_writable(request.options.observation, request.options.chip);
   size.require_valid();
   const Scene loaded = size.resized(scene.load());
-  outputs.require_no_input(inputs_of(chip, loaded), observation.outputs());
+  outputs.require_no_input(inputs(loaded), observation.outputs());
   request.traversal_reason = choose_tree_for(loaded, request.options);
+  list_samples_for(loaded, request);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
     ProgressBar bar(native ? "render (native)" : "render");
@@ -152,7 +179,7 @@ void RenderCommand::run() {
   outputs.write("--stats", [&] {
     return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
   });
-  note_if_black(loaded, result.film);
+  print_film_notes(loaded, result.film);
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
   print_notes(loaded.notes);
   std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n",
@@ -176,6 +203,7 @@ void add_render_command(CLI::App& app) {
   state->scene.add_to(command);
   in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 1, 1 << 30)
       ->capture_default_str();
+  state->importance.add_to(command);
   state->size.add_to(command);
   state->chip.add_to(command, "csx600");
   state->timing.add_to(command);

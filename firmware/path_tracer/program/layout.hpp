@@ -28,6 +28,7 @@ struct Layout {
   cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i
   cn::MonoPointer<std::uint64_t> nodes;
   cn::MonoPointer<std::uint64_t> textures;  ///< footprints of texels (records/tails.hpp)
+  cn::MonoPointer<CameraSampleRecord> camera_samples;  ///< behind everything else, of a run with a list
   int triangle_count =
       0;  ///< with a tree, in order of leaves; behind them lie kLightRun triangles for each light
   int light_count = 0;
@@ -72,6 +73,9 @@ struct Layout {
 };
 
 Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& config);
+
+/// Adds room for a list of camera samples (Work).
+void add_camera_samples(Layout& layout, std::uint64_t count);
 
 /// Blocks of the traversal bin's ring: enough for all rays and for blocks that are being loaded or saved.
 int traversal_bin_blocks(const ProgramConfig& config);

@@ -11,6 +11,7 @@ void add_bench_command(CLI::App& app) {
   add_bench_timing_command(command);
   add_bench_reference_command(command);
   add_bench_error_command(command);
+  add_bench_adaptive_command(command);
 }
 
 }  // namespace testbench

@@ -13,6 +13,7 @@ inline constexpr const char* kSeedAttribute = "csx600.seed";
 /// Each adds one subcommand to `csx600 bench`.
 void add_bench_reference_command(CLI::App& bench);
 void add_bench_error_command(CLI::App& bench);
+void add_bench_adaptive_command(CLI::App& bench);
 void add_bench_speed_command(CLI::App& bench);
 void add_bench_timing_command(CLI::App& bench);
 

@@ -82,17 +82,13 @@ std::vector<double> read_importance(const std::filesystem::path& path, FilmSize 
   return importance;
 }
 
-MeanSamples mean_samples(const std::vector<double>& importance, int samples,
-                         const std::filesystem::path& path, FilmSize film) {
-  MeanSamples means(importance.size());
-  for (std::size_t pixel = 0; pixel < importance.size(); ++pixel) {
-    means[pixel] = importance[pixel] * samples;
-    if (means[pixel] > kMostPixelSamples)
+void require_countable(const std::vector<double>& importance, int samples, const std::filesystem::path& path,
+                       FilmSize film) {
+  for (std::size_t pixel = 0; pixel < importance.size(); ++pixel)
+    if (importance[pixel] * samples > kMostPixelSamples)
       throw InputError(path.string() + ": found importance " + std::to_string(importance[pixel]) + " in " +
                        place_of(pixel, film) + ", which times --samples is more than " +
                        std::to_string(int(kMostPixelSamples)) + " paths; allowed: less");
-  }
-  return means;
 }
 
 }  // namespace testbench

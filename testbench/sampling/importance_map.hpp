@@ -14,8 +14,8 @@ namespace testbench {
 /// that is not finite or is negative, and for a map of zeros.
 std::vector<double> read_importance(const std::filesystem::path& path, FilmSize film);
 
-/// importance * samples. Throws InputError, naming `path`, where that is more than kMostPixelSamples.
-MeanSamples mean_samples(const std::vector<double>& importance, int samples,
-                         const std::filesystem::path& path, FilmSize film);
+/// Throws InputError, naming `path`, where importance * samples is more than kMostPixelSamples.
+void require_countable(const std::vector<double>& importance, int samples, const std::filesystem::path& path,
+                       FilmSize film);
 
 }  // namespace testbench

@@ -65,6 +65,7 @@ struct RenderCommand {
 RenderRequest RenderCommand::make_request() const {
   RenderRequest request{scene.path(), options, native};
   request.importance = importance.file();
+  passes.budget(native);  // whether it is allowed
   request.options.chip = chip.chip();
   request.options.timing = timing.style();
   request.options.level = level.level();
@@ -126,7 +127,6 @@ std::optional<PreparedRender> RenderCommand::prepare(Ranks& ranks) const {
       throw InputError("--waves, --transactions, --timeline: found " +
                        std::string(ranks.alone() ? "with several passes; allowed: one pass"
                                                  : "under mpirun; allowed: one process"));
-    passes.budget(native);
     if (ranks.is_first()) outputs.require_writable(observation.outputs());
     size.require_valid();
     Scene loaded = size.resized(scene.load());

@@ -50,10 +50,11 @@ class ProgressRelay {
   bool interrupted_ = false;
 };
 
-void require_mono_memory(const std::string& least, std::uint64_t bytes, const model::ChipConfig& chip) {
+/// @param what needs the memory: "scene and bins need "
+void require_mono_memory(const std::string& what, std::uint64_t bytes, const model::ChipConfig& chip) {
   if (bytes <= chip.ddr.size_bytes) return;
-  throw InputError("scene and bins need " + least + std::to_string(bytes) +
-                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
+  throw InputError(what + std::to_string(bytes) + " bytes of mono memory, ddr.size_bytes allows " +
+                   std::to_string(chip.ddr.size_bytes));
 }
 
 /// Building the image of ten million triangles takes a minute: a chip whose memory cannot hold even their
@@ -63,7 +64,7 @@ void require_memory_for_triangles(const Scene& scene, const RenderOptions& optio
   const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots,
                                        scene.coincident_triangles > 0};
   const path_tracer::Layout layout = path_tracer::make_layout(least, options.chip.chip.pes, options.program);
-  require_mono_memory("at least ", layout.total_bytes, options.chip);
+  require_mono_memory("scene and bins need at least ", layout.total_bytes, options.chip);
 }
 
 MonoImage make_checked_image(const Scene& scene, const RenderOptions& options) {
@@ -162,12 +163,12 @@ std::shared_ptr<const MonoImage> make_image(const Scene& scene, const RenderOpti
 }
 
 void require_list_memory(std::uint64_t samples, const model::ChipConfig& chip) {
-  require_mono_memory("with " + std::to_string(samples) + " paths at least ",
+  require_mono_memory("the list of " + std::to_string(samples) + " paths needs ",
                       samples * sizeof(path_tracer::CameraSampleRecord), chip);
 }
 
 void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) {
-  require_mono_memory("", image.layout.total_bytes, chip);
+  require_mono_memory("scene and bins need ", image.layout.total_bytes, chip);
 }
 
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,

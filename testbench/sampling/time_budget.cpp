@@ -10,7 +10,7 @@ namespace {
 
 /// What predictions may be wrong by: passes end when their longest paths do.
 constexpr double kSafety = 0.95;
-constexpr double kSpareFirstPasses = 0.25;
+constexpr double kSpareFirstPasses = 0.5;
 
 constexpr std::pair<const char*, double> kUnits[] = {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}, {"min", 60}};
 
@@ -37,19 +37,18 @@ std::string allowed_duration() {
 }
 
 void PassTimes::add(double paths, double seconds) {
-  if (passes_++ == 0) {
-    first_paths_ = paths;
-    first_seconds_ = seconds;
-  }
-  if (paths < largest_paths_) return;
-  largest_paths_ = paths;
-  seconds_a_path_ = seconds / paths;
+  passes_.push_back({paths, seconds});
 }
 
 double PassTimes::most_paths(double seconds) const {
-  const double each_pass = passes_ > 1 ? std::max(0.0, first_seconds_ - first_paths_ * seconds_a_path_) : 0;
-  const double usable = kSafety * seconds - each_pass - kSpareFirstPasses * first_seconds_;
-  return std::max(0.0, usable / seconds_a_path_);
+  const Pass& largest = *std::max_element(passes_.begin(), passes_.end(),
+                                          [](const Pass& a, const Pass& b) { return a.paths < b.paths; });
+  const double seconds_a_path = largest.seconds / largest.paths;
+  double each_pass = 0;
+  for (const Pass& pass : passes_)
+    each_pass = std::max(each_pass, pass.seconds - pass.paths * seconds_a_path);
+  const double usable = kSafety * seconds - each_pass - kSpareFirstPasses * passes_.front().seconds;
+  return std::max(0.0, usable / seconds_a_path);
 }
 
 }  // namespace testbench

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace testbench {
 
@@ -12,21 +13,21 @@ std::optional<double> parse_duration(const std::string& text);
 /// The allowed texts for error messages.
 std::string allowed_duration();
 
-/// Predicts how long passes take from those that are over: a time that every pass takes, and a time for each
-/// path.
+/// Predicts how long passes take from those that are over: for each path as long as in the largest of them,
+/// and for each pass the most that one took beyond that.
 class PassTimes {
  public:
   void add(double paths, double seconds);
   /// The most paths that a pass of at most `seconds` has, as predicted, with something to spare.
   double most_paths(double seconds) const;
-  bool any() const { return passes_ > 0; }
+  bool any() const { return !passes_.empty(); }
 
  private:
-  int passes_ = 0;
-  double first_paths_ = 0;
-  double first_seconds_ = 0;
-  double seconds_a_path_ = 0;  ///< of the largest pass
-  double largest_paths_ = 0;
+  struct Pass {
+    double paths;
+    double seconds;
+  };
+  std::vector<Pass> passes_;
 };
 
 }  // namespace testbench

@@ -14,17 +14,17 @@ using Words = std::vector<std::string>;
 
 class SamplingCommand : public test_support::CommandLineFixture {
  protected:
-  CommandResult render(const Words& more) {
-    Words words = {"render", CSX600_SCENES_DIR "/cornell_box", "--size", "12x10"};
+  CommandResult render(const Words& more, const std::string& size = "12x10") {
+    Words words = {"render", CSX600_SCENES_DIR "/cornell_box", "--size", size};
     words.insert(words.end(), more.begin(), more.end());
     return run(words);
   }
   Json json(const std::string& file) { return Json::parse(read(file)); }
 
   /// One line, exit code 2, and nothing was written.
-  void expect_wrong(const Words& options, const Words& parts) {
+  void expect_wrong(const Words& options, const Words& parts, const std::string& size = "12x10") {
     const std::vector<std::string> before = files();
-    const CommandResult result = render(options);
+    const CommandResult result = render(options, size);
     EXPECT_EQ(result.exit_code, 2);
     ASSERT_EQ(result.error_lines().size(), 1u) << result.error;
     for (const std::string& part : parts)
@@ -59,11 +59,11 @@ TEST_F(SamplingCommand, RefusesMapsInOneLine) {
   expect_wrong({"--importance", "map.exr"}, {"map.exr: cannot be read", "allowed"});
   expect_wrong({"--importance", "none.exr"}, {"none.exr", "allowed"});
   expect_wrong({"--importance", ""}, {"--importance", "allowed"});
-  ASSERT_EQ(render({"--samples", "1", "--native", "--exr", "other.exr", "--size", "8x8"}).exit_code, 0);
+  ASSERT_EQ(render({"--samples", "1", "--native", "--exr", "other.exr"}, "8x8").exit_code, 0);
   expect_wrong({"--importance", "other.exr"}, {"other.exr: found", "8x8", "allowed", "12x10"});
-  expect_wrong({"--importance", "other.exr", "--size", "8x8", "--exr", "other.exr"},
-               {"--exr", "is an input (--importance)"});
-  expect_wrong({"--importance", "other.exr", "--size", "8x8", "--samples", "1000000000"}, {"allowed"});
+  expect_wrong({"--importance", "other.exr", "--exr", "other.exr"}, {"--exr", "is an input (--importance)"},
+               "8x8");
+  expect_wrong({"--importance", "other.exr", "--samples", "1000000000"}, {"paths needs", "allows"}, "8x8");
 }
 
 TEST_F(SamplingCommand, AdaptiveSamplingReachesItsTarget) {
@@ -82,7 +82,8 @@ TEST_F(SamplingCommand, SnapshotsAreThePicturesOfThePasses) {
   ASSERT_EQ(render({"--samples", "4", "--snapshots", "passes", "--exr", "whole.exr", "--stats", "s.json"})
                 .exit_code,
             0);
-  EXPECT_EQ(files(), (Words{"passes", "s.json", "whole.exr"}));
+  EXPECT_EQ(files(), (Words{"passes/pass_001.exr", "passes/pass_002.exr", "passes/pass_003.exr", "s.json",
+                            "whole.exr"}));
   for (int samples = 1, pass = 1; samples <= 4; samples *= 2, ++pass) {
     const std::string snapshot = "passes/pass_00" + std::to_string(pass) + ".exr";
     // An importance map of the film's size: whole, and with finite values.

@@ -13,6 +13,7 @@ void add_bench_command(CLI::App& app) {
   add_bench_error_command(command);
   add_bench_skips_command(command);
   add_bench_image_command(command);
+  add_bench_adaptive_command(command);
 }
 
 }  // namespace testbench

@@ -2,12 +2,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/firmware_options.hpp"
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"
+#include "testbench/commands/sampling_options.hpp"
 #include "testbench/commands/wave_options.hpp"
 #include "testbench/film/black_film.hpp"
 #include "testbench/film/image_file.hpp"
@@ -25,6 +27,13 @@
 namespace testbench {
 namespace {
 
+/// What all ranks have before they render.
+struct PreparedRender {
+  Scene scene;
+  RenderRequest request;
+  std::vector<double> importance;  ///< of each pixel
+};
+
 struct RenderCommand {
   SceneArgument scene;
   SizeOption size;
@@ -37,23 +46,32 @@ struct RenderCommand {
   OutputFiles outputs;
   bool statistics_text_wanted = false;
   ObservationOption observation;
+  ImportanceOption importance;
+  PassOptions passes;
 
   void run();
   void run_on_ranks(Ranks& ranks);
+  void run_in_passes(Ranks& ranks);
 
  private:
+  std::optional<PreparedRender> prepare(Ranks& ranks) const;
   RenderRequest make_request() const;
   std::string choose_tree_for(const Scene& loaded, RenderOptions& of) const;
+  std::vector<InputName> inputs(const Scene& loaded) const;
+  void list_samples(MeanSamples of_pixels, RenderRequest& request) const;
   void write_image(const Film& film, const std::map<std::string, std::string>& provenance) const;
 };
 
 RenderRequest RenderCommand::make_request() const {
   RenderRequest request{scene.path(), options, native};
+  request.importance = importance.file();
+  passes.budget(native);  // whether it is allowed
   request.options.chip = chip.chip();
   request.options.timing = timing.style();
   request.options.level = level.level();
   // An OpenEXR file has the variance, which is 0 of one sample.
   if (outputs.path("--exr").empty() || options.work.samples == 1) request.options.film_sums = FilmSums::means;
+  if (passes.any()) request.options.film_sums = FilmSums::means_and_variances;
   if (native && request.options.timing == model::TimingStyle::approximately_timed)
     throw InputError("--timing: found at with --native, a native run has no clock; allowed is lt");
   if (native && observation.any())
@@ -69,30 +87,55 @@ std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& o
   return choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of.program);
 }
 
+std::vector<InputName> RenderCommand::inputs(const Scene& loaded) const {
+  std::vector<InputName> inputs = inputs_of(chip, loaded);
+  inputs.push_back(importance.input());
+  return inputs;
+}
+
+/// The paths that an importance map asks for.
+void RenderCommand::list_samples(MeanSamples of_pixels, RenderRequest& request) const {
+  if (!importance.is_given()) return;
+  for (double& samples : of_pixels) samples *= request.options.work.samples;
+  const SampleCounts counts = counts_of(of_pixels, request.options.program.seed);
+  require_list_memory(total(counts), request.options.chip);
+  request.options.camera_samples =
+      testbench::list_samples(SampleCounts(counts.size(), 0), counts, request.options.program.pixel_stride);
+}
+
 void RenderCommand::write_image(const Film& film,
                                 const std::map<std::string, std::string>& provenance) const {
   if (!outputs.path("--exr").empty()) write_exr(outputs.path("--exr"), film, provenance);
   if (!outputs.path("--png").empty()) write_png(outputs.path("--png"), film);
 }
 
-void note_if_black(const Scene& loaded, const Film& film) {
+void print_film_notes(const Scene& loaded, const Film& film) {
+  const int without = film.samples().pixels_without;
+  if (without > 0)
+    print_note(std::to_string(without) + " of " + std::to_string(film.pixel_count()) +
+               " pixels have no path and are black");
   if (is_black(film)) print_note("every pixel is black: " + why_black(loaded));
 }
 
-/// Each rank renders its share of the samples on a machine of its own.
-void RenderCommand::run_on_ranks(Ranks& ranks) {
+/// What all ranks check before they render. An error is the first rank's to say; the others get nothing.
+std::optional<PreparedRender> RenderCommand::prepare(Ranks& ranks) const {
   std::string error;
-  RenderRequest request;
-  std::optional<Scene> loaded;
+  std::optional<PreparedRender> prepared;
   try {
-    request = make_request();
+    RenderRequest request = make_request();
     if (observation.any())
-      throw InputError("--waves, --transactions, --timeline: found under mpirun; allowed: one process");
+      throw InputError("--waves, --transactions, --timeline: found " +
+                       std::string(ranks.alone() ? "with several passes; allowed: one pass"
+                                                 : "under mpirun; allowed: one process"));
     if (ranks.is_first()) outputs.require_writable(observation.outputs());
     size.require_valid();
-    loaded = size.resized(scene.load());
-    if (ranks.is_first()) outputs.require_no_input(inputs_of(chip, *loaded));
-    request.traversal_reason = choose_tree_for(*loaded, request.options);
+    Scene loaded = size.resized(scene.load());
+    if (ranks.is_first()) outputs.require_no_input(inputs(loaded));
+    request.traversal_reason = choose_tree_for(loaded, request.options);
+    std::vector<double> of_pixels = importance.importance(loaded.film, request.options.work.samples);
+    if (!passes.any()) list_samples(of_pixels, request);
+    if (ranks.is_first()) passes.prepare_snapshots();
+    prepared = PreparedRender{std::move(loaded), std::move(request), std::move(of_pixels)};
   } catch (const InputError& wrong) {
     error = wrong.what();
   }
@@ -100,12 +143,29 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
     if (!of_rank.empty() && ranks.is_first())
       throw InputError(of_rank);
     else if (!of_rank.empty())
-      return;
+      return std::nullopt;
+  return prepared;
+}
+
+void print_head(const Scene& loaded, const RenderRequest& request) {
+  std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n",
+              printable(loaded.name).c_str(), loaded.film.width, loaded.film.height,
+              request.options.work.samples, name_of(request.options.program.program),
+              request.options.program.n, option_text(request.options.program, "buffer").c_str(),
+              request.native ? "native" : request.options.chip.preset.c_str());
+}
+
+/// Each rank renders its share of the samples on a machine of its own.
+void RenderCommand::run_on_ranks(Ranks& ranks) {
+  const auto prepared = prepare(ranks);
+  if (!prepared) return;
+  const Scene& loaded = prepared->scene;
+  const RenderRequest& request = prepared->request;
   const InterruptGuard interrupt;
   const std::optional<RankRender> render = [&] {
     std::optional<ProgressBar> bar;
     if (ranks.is_first()) bar.emplace("render (ranks)");
-    return render_on_ranks(ranks, *loaded, request, [&](double share) {
+    return render_on_ranks(ranks, loaded, request, [&](double share) {
       if (bar) bar->show(share);
       return !interrupt.requested();
     });
@@ -118,26 +178,62 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       {"csx600.image_sha256", render->film.sha256()}};
   write_image(render->film, provenance);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
-  print_notes(loaded->notes);
-  note_if_black(*loaded, render->film);
+  print_notes(loaded.notes);
+  print_film_notes(loaded, render->film);
   std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments",
-              printable(loaded->name).c_str(), loaded->film.width, loaded->film.height,
+              printable(loaded.name).c_str(), loaded.film.width, loaded.film.height,
               request.options.work.samples, ranks.size(), static_cast<unsigned long long>(render->segments));
   if (render->simulated_seconds)
     std::printf(", %.6f s simulated on the chip that took longest", *render->simulated_seconds);
   std::printf(", %.2f s CPU\n", render->cpu_seconds);
 }
 
+/// Each pass is shared by all ranks.
+void RenderCommand::run_in_passes(Ranks& ranks) {
+  const auto prepared = prepare(ranks);
+  if (!prepared) return;
+  const Scene& loaded = prepared->scene;
+  const RenderRequest& request = prepared->request;
+  const auto plan = passes.plan(prepared->importance, request.options.work.samples);
+  const std::map<std::string, std::string> provenance = {{"csx600.scene", scene.path()},
+                                                         {"csx600.importance", importance.file()}};
+  const InterruptGuard interrupt;
+  const std::optional<PassRender> render = [&] {
+    std::optional<ProgressBar> bar;
+    if (ranks.is_first()) bar.emplace("render (passes)");
+    const PassActions actions{
+        [&](const Film& film, int pass) { passes.write_snapshot(film, pass, provenance); },
+        [&](double share) {
+          if (bar) bar->show(share);
+          return !interrupt.requested();
+        }};
+    return render_in_passes(ranks, loaded, request, *plan, passes.budget(native), actions);
+  }();
+  if (!render) return;
+  std::map<std::string, std::string> of_image = provenance;
+  of_image["csx600.passes"] = std::to_string(render->passes);
+  of_image["csx600.segments"] = std::to_string(render->segments);
+  of_image["csx600.image_sha256"] = render->film.sha256();
+  write_image(render->film, of_image);
+  outputs.write("--stats", [&] { return statistics_json(render->statistics); });
+  print_notes(loaded.notes);
+  print_film_notes(loaded, render->film);
+  print_head(loaded, request);
+  std::fputs(pass_table(*render, *plan).c_str(), stdout);
+}
+
 void RenderCommand::run() {
   Ranks ranks;
+  if (passes.any()) return run_in_passes(ranks);
   if (!ranks.alone()) return run_on_ranks(ranks);
   RenderRequest request = make_request();
   outputs.require_writable(observation.outputs());
   require_writable(request.options.observation, request.options.chip);
   size.require_valid();
   const Scene loaded = size.resized(scene.load());
-  outputs.require_no_input(inputs_of(chip, loaded), observation.outputs());
+  outputs.require_no_input(inputs(loaded), observation.outputs());
   request.traversal_reason = choose_tree_for(loaded, request.options);
+  list_samples(importance.importance(loaded.film, request.options.work.samples), request);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {
     ProgressBar bar(native ? "render (native)" : "render");
@@ -152,14 +248,10 @@ void RenderCommand::run() {
   outputs.write("--stats", [&] {
     return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
   });
-  note_if_black(loaded, result.film);
+  print_film_notes(loaded, result.film);
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
   print_notes(loaded.notes);
-  std::printf("%s, %d x %d, %d samples a pixel, program %s, n = %d, buffering %s, %s\n",
-              printable(loaded.name).c_str(), loaded.film.width, loaded.film.height,
-              request.options.work.samples, name_of(request.options.program.program),
-              request.options.program.n, option_text(request.options.program, "buffer").c_str(),
-              native ? "native" : request.options.chip.preset.c_str());
+  print_head(loaded, request);
   std::fputs(render_table(request, result).c_str(), stdout);
   if (outputs.path("--exr").empty() && outputs.path("--png").empty())
     std::puts("  no image written: name one with --exr or --png");
@@ -176,6 +268,8 @@ void add_render_command(CLI::App& app) {
   state->scene.add_to(command);
   in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 1, 1 << 30)
       ->capture_default_str();
+  state->importance.add_to(command);
+  state->passes.add_to(command);
   state->size.add_to(command);
   state->chip.add_to(command, "csx600");
   state->timing.add_to(command);

@@ -200,6 +200,18 @@ std::uint64_t Film::rejected_samples() const {
   return rejected_.not_finite + rejected_.negative + rejected_.too_large;
 }
 
+PixelSamples Film::samples() const {
+  PixelSamples found{sums_.front().samples, 0, 0, 0};
+  for (const Sums& pixel : sums_) {
+    found.fewest = std::min(found.fewest, pixel.samples);
+    found.most = std::max(found.most, pixel.samples);
+    found.mean += double(pixel.samples);
+    if (pixel.samples == 0) ++found.pixels_without;
+  }
+  found.mean /= double(sums_.size());
+  return found;
+}
+
 std::vector<double> Film::rgb() const {
   std::vector<double> result;
   result.reserve(3 * sums_.size());

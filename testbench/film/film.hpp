@@ -18,6 +18,14 @@ struct RejectedSamples {
       0;  ///< a channel above Film::max_radiance(), or a pixel already holds Film::kMaxSamples
 };
 
+/// Numbers of samples over the pixels of a film.
+struct PixelSamples {
+  std::uint64_t fewest = 0;  ///< of a pixel
+  std::uint64_t most = 0;
+  double mean = 0;
+  int pixels_without = 0;
+};
+
 /// What a film keeps of each pixel's samples besides their number.
 enum class FilmSums : std::uint8_t {
   means,                ///< 56 bytes a pixel
@@ -66,6 +74,7 @@ class Film {
   double max_radiance() const { return max_radiance_; }
 
   std::uint64_t sample_count(int pixel) const { return at(pixel).samples; }
+  PixelSamples samples() const;
   /// Mean radiance; 0 for a pixel without samples.
   glm::dvec3 mean(int pixel) const;
   bool keeps_variances() const { return !squares_.empty(); }

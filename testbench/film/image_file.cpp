@@ -170,8 +170,8 @@ ExrFilm read_exr_film(const std::filesystem::path& path) {
   ExrFilm film;
   film.width = file.size().x;
   film.height = file.size().y;
-  film.rgb = file.channels(kExrColour);
-  film.variance = file.channels(kVarianceChannels);
+  film.rgb = file.channels({std::begin(kExrColour), std::end(kExrColour)});
+  film.variance = file.channels({std::begin(kVarianceChannels), std::end(kVarianceChannels)});
   film.attributes = file.texts();
   return film;
 }

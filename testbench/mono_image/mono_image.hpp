@@ -8,10 +8,17 @@
 
 namespace testbench {
 
-/// The content of mono memory that the host uploads before a run, from address 0.
+/// The content of mono memory that the host uploads before a run: a scene, from address 0, and a list of
+/// camera samples.
 struct MonoImage {
   path_tracer::Layout layout;
   std::vector<std::uint8_t> bytes;  ///< layout.scene_bytes bytes
+  /// The content of layout.camera_samples; empty in a run without a list.
+  std::vector<path_tracer::CameraSampleRecord> camera_samples = {};
+
+  std::size_t camera_sample_bytes() const {
+    return camera_samples.size() * sizeof(path_tracer::CameraSampleRecord);
+  }
 };
 
 /// Lays out a scene for the firmware, lengths in the scene's unit. Throws InputError for a scene without

@@ -23,6 +23,9 @@ void HostPc::wait_until(model::Cycles cycle) {
 
 void HostPc::run() {
   wait_until(chip_.host_link.upload(0, image_.bytes.data(), image_.bytes.size(), now()));
+  if (!image_.camera_samples.empty())
+    wait_until(chip_.host_link.upload(image_.layout.camera_samples.address, image_.camera_samples.data(),
+                                      image_.camera_sample_bytes(), now()));
   chip_.control_unit.start();
   while (true) {
     while (chip_.control_unit.host_semaphores().try_wait(HostSemaphores::kResultsReady)) fetch_results();

@@ -35,8 +35,8 @@ auto with_input_errors(Work&& work) {
 /// Tells the caller how far the firmware is, and the firmware whether the caller wants to stop.
 class ProgressRelay {
  public:
-  ProgressRelay(const Scene& scene, const path_tracer::Work& work, const RenderProgress& progress)
-      : total_(double(scene.film.width) * scene.film.height * work.samples), progress_(progress) {}
+  ProgressRelay(std::uint64_t paths, const RenderProgress& progress)
+      : total_(double(paths)), progress_(progress) {}
 
   bool operator()(std::uint64_t paths_issued) {
     if (progress_ && !progress_(double(paths_issued) / total_)) interrupted_ = true;
@@ -50,10 +50,33 @@ class ProgressRelay {
   bool interrupted_ = false;
 };
 
-void require_mono_memory(const std::string& least, std::uint64_t bytes, const model::ChipConfig& chip) {
+/// @param what needs the memory: "scene and bins need "
+void require_mono_memory(const std::string& what, std::uint64_t bytes, const model::ChipConfig& chip) {
   if (bytes <= chip.ddr.size_bytes) return;
-  throw InputError("scene and bins need " + least + std::to_string(bytes) +
-                   " bytes of mono memory, ddr.size_bytes allows " + std::to_string(chip.ddr.size_bytes));
+  throw InputError(what + std::to_string(bytes) + " bytes of mono memory, ddr.size_bytes allows " +
+                   std::to_string(chip.ddr.size_bytes));
+}
+
+/// Building the image of ten million triangles takes a minute: a chip whose memory cannot hold even their
+/// records is refused before.
+void require_memory_for_triangles(const Scene& scene, const RenderOptions& options) {
+  const int slots = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
+  const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots,
+                                       scene.coincident_triangles > 0};
+  const path_tracer::Layout layout = path_tracer::make_layout(least, options.chip.chip.pes, options.program);
+  require_mono_memory("scene and bins need at least ", layout.total_bytes, options.chip);
+}
+
+MonoImage make_checked_image(const Scene& scene, const RenderOptions& options) {
+  path_tracer::validate(options.program);
+  require_memory_for_triangles(scene, options);
+  return make_normal_mono_image(scene, options.chip.chip.pes, options.program);
+}
+
+std::uint64_t paths_of(const Scene& scene, const RenderOptions& options) {
+  if (!options.camera_samples.empty()) return options.camera_samples.size();
+  return std::uint64_t(scene.film.width) * std::uint64_t(scene.film.height) *
+         std::uint64_t(options.work.samples);
 }
 
 /// What both kinds of run have around the machine.
@@ -62,7 +85,7 @@ class Run {
   Run(const Scene& scene, const RenderOptions& options, const RenderProgress& progress)
       : options_(options),
         image_(checked_image(scene, options)),
-        relay_(scene, options.work, progress),
+        relay_(paths_of(scene, options), progress),
         result_(Film(scene.film, film_scale(scene), options.film_sums)) {}
 
   const MonoImage& image() const { return image_; }
@@ -82,7 +105,9 @@ class Run {
   void firmware(cn::Machine& machine) {
     const path_tracer::Kernels& kernels =
         checker_ ? path_tracer::observed_kernels() : path_tracer::kernels(options_.level);
-    path_tracer::PathTracer tracer(machine, kernels, options_.program, image_.layout, options_.work);
+    path_tracer::Work work = options_.work;
+    work.listed_samples = image_.camera_samples.size();
+    path_tracer::PathTracer tracer(machine, kernels, options_.program, image_.layout, work);
     tracer.run(std::ref(relay_));
     result_.counts = tracer.counts();
     if (checker_ && !relay_.interrupted()) checker_->firmware_ends();
@@ -98,21 +123,11 @@ class Run {
   }
 
  private:
-  /// Building the image of ten million triangles takes a minute: a chip whose memory cannot hold even their
-  /// records is refused before.
-  static void require_memory_for_triangles(const Scene& scene, const RenderOptions& options) {
-    const int slots = options.program.uses_tree() ? options.program.tree.resident_nodes : 0;
-    const path_tracer::SceneCounts least{static_cast<int>(scene.triangles.size()), 1, slots,
-                                         scene.coincident_triangles > 0};
-    const path_tracer::Layout layout =
-        path_tracer::make_layout(least, options.chip.chip.pes, options.program);
-    require_mono_memory("at least ", layout.total_bytes, options.chip);
-  }
-
   static MonoImage checked_image(const Scene& scene, const RenderOptions& options) {
-    path_tracer::validate(options.program);
-    require_memory_for_triangles(scene, options);
-    MonoImage image = make_normal_mono_image(scene, options.chip.chip.pes, options.program);
+    MonoImage image = options.image ? *options.image : make_checked_image(scene, options);
+    image.camera_samples = options.camera_samples;
+    if (!image.camera_samples.empty())
+      path_tracer::add_camera_samples(image.layout, image.camera_samples.size());
     require_mono_memory(image, options.chip);
     return image;
   }
@@ -133,10 +148,27 @@ std::unique_ptr<NativeMachine> native_machine(const model::ChipConfig& chip, std
   return std::make_unique<RecordingMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, *record);
 }
 
+void copy_to(NativeMachine& machine, const MonoImage& image) {
+  std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
+  if (!image.camera_samples.empty())
+    std::memcpy(machine.mono() + image.layout.camera_samples.address, image.camera_samples.data(),
+                image.camera_sample_bytes());
+}
+
 }  // namespace
 
+std::shared_ptr<const MonoImage> make_image(const Scene& scene, const RenderOptions& options) {
+  return with_input_errors(
+      [&] { return std::make_shared<const MonoImage>(make_checked_image(scene, options)); });
+}
+
+void require_list_memory(std::uint64_t samples, const model::ChipConfig& chip) {
+  require_mono_memory("the list of " + std::to_string(samples) + " paths needs ",
+                      samples * sizeof(path_tracer::CameraSampleRecord), chip);
+}
+
 void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) {
-  require_mono_memory("", image.layout.total_bytes, chip);
+  require_mono_memory("scene and bins need ", image.layout.total_bytes, chip);
 }
 
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
@@ -165,7 +197,7 @@ RenderResult render_natively(const Scene& scene, const RenderOptions& options, c
     const path_tracer::Layout& layout = run.image().layout;
     const std::unique_ptr<NativeMachine> owned = native_machine(options.chip, layout.total_bytes, record);
     NativeMachine& machine = *owned;
-    std::memcpy(machine.mono(), run.image().bytes.data(), run.image().bytes.size());
+    copy_to(machine, run.image());
     ResultReader results(layout, run.result().film);
     model::HazardChecker* const checker = run.check_hazards(machine, {});
     machine.on_signal(path_tracer::HostSemaphores::kResultsReady, [&] {

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "firmware/cn/simd/level.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
@@ -25,6 +27,9 @@ struct RenderOptions {
   model::ChipConfig chip;
   path_tracer::ProgramConfig program;
   path_tracer::Work work;
+  /// The paths to trace, if not those of `work`; no sample of a pixel twice.
+  std::vector<path_tracer::CameraSampleRecord> camera_samples = {};
+  std::shared_ptr<const MonoImage> image = {};  ///< make_image() of the scene, for several renders of it
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
   cn::Level level = cn::widest_level();
   FilmSums film_sums = FilmSums::means_and_variances;
@@ -55,6 +60,13 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
 /// to `record`, an empty stream, unless it is null.
 RenderResult render_natively(const Scene& scene, const RenderOptions& options,
                              const RenderProgress& progress = {}, TimingStream* record = nullptr);
+
+/// The scene's image for renders with these chip and program. Throws InputError.
+std::shared_ptr<const MonoImage> make_image(const Scene& scene, const RenderOptions& options);
+
+/// Throws InputError when a list of so many camera samples needs more mono memory than the chip has; before
+/// the list is made.
+void require_list_memory(std::uint64_t samples, const model::ChipConfig& chip);
 
 /// Throws InputError when scene and bins need more mono memory than the chip has.
 void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip);

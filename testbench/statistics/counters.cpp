@@ -4,8 +4,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "testbench/run/render.hpp"
 #include "testbench/run/energy.hpp"
+#include "testbench/run/render.hpp"
 #include "testbench/system/simulator_time.hpp"
 
 namespace testbench {
@@ -22,6 +22,11 @@ std::uint64_t rays(const RenderResult& run) {
 Json per_joule(const RenderResult& run, std::uint64_t count) {
   if (!run.chip) return nullptr;
   return double(count) / energy_of(*run.chip).joules();
+}
+
+Json samples_a_pixel(const RenderResult& run) {
+  const PixelSamples samples = run.film.samples();
+  return {{"fewest", samples.fewest}, {"mean", samples.mean}, {"most", samples.most}};
 }
 
 Json paths_by_segments(const RunCounts& counts) {
@@ -85,6 +90,10 @@ const Counters<RenderResult>& run_counters() {
       {{"segments_per_joule", "-", "segments by the energy of chip and DDR; null for a native run",
         CounterKind::derived},
        [](const Run& run) { return per_joule(run, run.counts.segments); }},
+      {{"samples_a_pixel.*", "-",
+        "paths of the pixel with the fewest, of the mean one, of the one with the most",
+        CounterKind::derived},
+       samples_a_pixel},
       {{"simulator.cpu_seconds", "s", "CPU time of the simulator, without loading and writing"},
        [](const Run& run) { return Json(run.cpu_seconds); }},
       {{"simulator.wall_seconds", "s", "the same by the wall clock"},

@@ -5,6 +5,7 @@
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/processes.hpp"
 
 namespace testbench {
 namespace {
@@ -12,10 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A rank's part as it travels: a line of JSON, then the film's bytes.
-std::string render_part(const Scene& scene, RenderRequest request, const path_tracer::Work& work,
-                        const RenderProgress& progress) {
-  if (work.samples == 0) return json_text(Json::object()) + "\n";
-  request.options.work = work;
+std::string render_part(const Scene& scene, const RenderRequest& request, const RenderProgress& progress) {
   try {
     const RenderResult result = request.native ? render_natively(scene, request.options, progress)
                                                : render_on_chip(scene, request.options, progress);
@@ -25,6 +23,12 @@ std::string render_part(const Scene& scene, RenderRequest request, const path_tr
   } catch (const std::exception& error) {
     return json_text({{"error", error.what()}, {"input", false}}) + "\n";
   }
+}
+
+std::string render_share(const Scene& scene, const RenderRequest& request, const RenderProgress& progress) {
+  if (request.options.work.samples == 0) return json_text(Json::object()) + "\n";
+  if (!request.in_own_process) return render_part(scene, request, progress);
+  return run_in_processes({[&] { return render_part(scene, request, progress); }}, 1).front();
 }
 
 void add_part(const Scene& scene, FilmSums sums, const std::string& message, RankRender& render,
@@ -56,15 +60,29 @@ void throw_error(const std::vector<std::string>& messages) {
 
 }  // namespace
 
-path_tracer::Work share_of(const path_tracer::Work& work, int rank, int ranks) {
-  const auto before = [&](int r) { return static_cast<int>(std::int64_t{work.samples} * r / ranks); };
-  return {work.first_sample + before(rank), before(rank + 1) - before(rank)};
+void take_share(RenderOptions& options, int rank, int ranks) {
+  const auto before = [ranks](std::size_t all, int r) {
+    return static_cast<int>(all * std::size_t(r) / std::size_t(ranks));
+  };
+  if (options.camera_samples.empty()) {
+    path_tracer::Work& work = options.work;
+    const auto all = std::size_t(work.samples);
+    work.first_sample += before(all, rank);
+    work.samples = before(all, rank + 1) - before(all, rank);
+    return;
+  }
+  auto& list = options.camera_samples;
+  const std::size_t all = list.size();
+  list.erase(list.begin() + before(all, rank + 1), list.end());
+  list.erase(list.begin(), list.begin() + before(all, rank));
+  if (list.empty()) options.work.samples = 0;
 }
 
 std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, const RenderRequest& request,
                                           const RenderProgress& progress) {
-  const path_tracer::Work work = share_of(request.options.work, ranks.rank(), ranks.size());
-  const std::string own = render_part(scene, request, work, progress);
+  RenderRequest share = request;
+  take_share(share.options, ranks.rank(), ranks.size());
+  const std::string own = render_share(scene, share, progress);
   if (!ranks.is_first()) {
     ranks.send(0, own);
     return std::nullopt;

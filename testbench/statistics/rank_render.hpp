@@ -22,7 +22,7 @@ struct RankRender {
 std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, const RenderRequest& request,
                                           const RenderProgress& progress);
 
-/// The samples of one rank; those of all ranks are `work`.
-path_tracer::Work share_of(const path_tracer::Work& work, int rank, int ranks);
+/// Gives the options the paths of one rank; those of all ranks are theirs.
+void take_share(RenderOptions& options, int rank, int ranks);
 
 }  // namespace testbench

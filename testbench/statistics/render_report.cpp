@@ -9,9 +9,9 @@
 #include "firmware/path_tracer/program/program_options.hpp"
 #include "model/config/chip_parameters.hpp"
 #include "testbench/paper/paper.hpp"
+#include "testbench/run/energy.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/statistics/counters.hpp"
-#include "testbench/run/energy.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/roofline.hpp"
 #include "testbench/statistics/statistics_file.hpp"
@@ -25,7 +25,7 @@ Json value_json(const path_tracer::OptionValue& value) {
   return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
-/// Every option of the firmware, and the samples.
+/// Every option of the firmware, and the samples: of a run with a list, a pixel's mean number.
 Json firmware_json(const RenderOptions& options) {
   Json json;
   for (const path_tracer::ProgramOption& option : path_tracer::program_options())
@@ -138,6 +138,7 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   if (!request.traversal_reason.empty()) json["traversal_chosen_because"] = request.traversal_reason;
   json["machine"] = request.native ? "native" : "chip";
   json["timing"] = request.native ? "none" : timing_name(request.options.timing);
+  if (!request.importance.empty()) json["importance"] = request.importance;
   json["chip_preset"] = request.options.chip.preset;
   json["chip_config"] = chip_json(request.options.chip);
   Json measured;
@@ -173,11 +174,14 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
 
 std::map<std::string, std::string> render_provenance(const RenderRequest& request,
                                                      const RenderResult& result) {
-  return {{"csx600.scene", request.scene},
-          {"csx600.firmware", json_text(firmware_json(request.options))},
-          {"csx600.machine", request.native ? "native" : "chip " + request.options.chip.preset},
-          {"csx600.segments", std::to_string(result.counts.segments)},
-          {"csx600.image_sha256", result.film.sha256()}};
+  std::map<std::string, std::string> provenance = {
+      {"csx600.scene", request.scene},
+      {"csx600.firmware", json_text(firmware_json(request.options))},
+      {"csx600.machine", request.native ? "native" : "chip " + request.options.chip.preset},
+      {"csx600.segments", std::to_string(result.counts.segments)},
+      {"csx600.image_sha256", result.film.sha256()}};
+  if (!request.importance.empty()) provenance["csx600.importance"] = request.importance;
+  return provenance;
 }
 
 }  // namespace testbench

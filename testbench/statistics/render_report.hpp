@@ -14,6 +14,8 @@ struct RenderRequest {
   RenderOptions options;
   bool native = false;
   std::string traversal_reason = {};  ///< why the traversal was chosen; empty when the user gave it
+  std::string importance = {};        ///< file of the importance map, if there is one
+  bool in_own_process = false;        ///< of one of several renders: SystemC elaborates once a process
 };
 
 /// The statistics file. Everything but the section `simulator` is the same for the same inputs, byte for

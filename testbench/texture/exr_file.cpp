@@ -32,9 +32,9 @@ ExrFile::ExrFile(const std::filesystem::path& path, const ExrLimits& limits) : p
   }
 }
 std::vector<float> ExrFile::channels(const ChannelNames& names) const {
-  for (const char* const name : names) require_channel(name, names);
+  for (const std::string& name : names) require_channel(name, names);
   // Chunks that end too early leave NaN behind, which is refused below.
-  std::vector<float> values(kChannels * std::size_t(size_.x) * std::size_t(size_.y),
+  std::vector<float> values(names.size() * std::size_t(size_.x) * std::size_t(size_.y),
                             std::numeric_limits<float>::quiet_NaN());
   if (is_tiled())
     read_tiles(names, values);
@@ -118,18 +118,28 @@ void ExrFile::require_bytes() const {
            "a whole OpenEXR file");
 }
 
-void ExrFile::require_channel(const char* name, const ChannelNames& names) const {
+ExrFile::ChannelNames ExrFile::channel_names() const {
+  const exr_attr_chlist_t* list = nullptr;
+  require(exr_get_channels(context_, kPart, &list));
+  ChannelNames names;
+  for (int i = 0; i < list->num_channels; ++i)
+    names.emplace_back(list->entries[i].name.str, std::size_t(list->entries[i].name.length));
+  return names;
+}
+
+void ExrFile::require_channel(const std::string& name, const ChannelNames& names) const {
   const exr_attr_chlist_t* list = nullptr;
   require(exr_get_channels(context_, kPart, &list));
   for (int i = 0; i < list->num_channels; ++i) {
     const exr_attr_chlist_entry_t& channel = list->entries[i];
     if (std::string_view(channel.name.str, std::size_t(channel.name.length)) != name) continue;
     if (channel.x_sampling != 1 || channel.y_sampling != 1)
-      refuse(std::string(name) + ": found a channel without a value in some pixels", "a value in each");
+      refuse(name + ": found a channel without a value in some pixels", "a value in each");
     return;
   }
-  refuse("found no channel " + std::string(name),
-         std::string("an OpenEXR file with channels ") + names[0] + ", " + names[1] + " and " + names[2]);
+  std::string wanted = names.front();
+  for (std::size_t i = 1; i < names.size(); ++i) wanted += (i + 1 < names.size() ? ", " : " and ") + names[i];
+  refuse("found no channel " + name, "an OpenEXR file with channels " + wanted);
 }
 
 void ExrFile::read_lines(const ChannelNames& names, std::vector<float>& values) const {
@@ -138,7 +148,7 @@ void ExrFile::read_lines(const ChannelNames& names, std::vector<float>& values) 
   for (int row = 0; row < size_.y; row += lines) {
     exr_chunk_info_t chunk = {};
     require(exr_read_scanline_chunk_info(context_, kPart, window_.min.y + row, &chunk));
-    read_chunk(chunk, names, pixel(values, 0, row));
+    read_chunk(chunk, names, pixel(values, names.size(), 0, row));
   }
 }
 
@@ -151,12 +161,12 @@ void ExrFile::read_tiles(const ChannelNames& names, std::vector<float>& values) 
     for (int x = 0; x * std::int64_t{width} < size_.x; ++x) {
       exr_chunk_info_t chunk = {};
       require(exr_read_tile_chunk_info(context_, kPart, x, y, 0, 0, &chunk));
-      read_chunk(chunk, names, pixel(values, x * width, y * height));
+      read_chunk(chunk, names, pixel(values, names.size(), x * width, y * height));
     }
 }
 
-float* ExrFile::pixel(std::vector<float>& values, int column, int row) const {
-  return values.data() + kChannels * (std::size_t(row) * std::size_t(size_.x) + std::size_t(column));
+float* ExrFile::pixel(std::vector<float>& values, std::size_t channels, int column, int row) const {
+  return values.data() + channels * (std::size_t(row) * std::size_t(size_.x) + std::size_t(column));
 }
 
 struct ExrFile::Decoder : exr_decode_pipeline_t {
@@ -173,14 +183,12 @@ void ExrFile::read_chunk(const exr_chunk_info_t& chunk, const ChannelNames& name
   require(exr_decoding_initialize(context_, kPart, &chunk, &decoder));
   for (std::int16_t i = 0; i < decoder.channel_count; ++i) {
     exr_coding_channel_info_t& channel = decoder.channels[i];
-    const auto* const wanted = std::find_if(std::begin(names), std::end(names), [&](const char* name) {
-      return std::string_view(name) == channel.channel_name;
-    });
-    if (wanted == std::end(names)) continue;
-    channel.decode_to_ptr = reinterpret_cast<std::uint8_t*>(first + (wanted - std::begin(names)));
+    const auto wanted = std::find(names.begin(), names.end(), channel.channel_name);
+    if (wanted == names.end()) continue;
+    channel.decode_to_ptr = reinterpret_cast<std::uint8_t*>(first + (wanted - names.begin()));
     channel.user_data_type = EXR_PIXEL_FLOAT;
     channel.user_bytes_per_element = sizeof(float);
-    channel.user_pixel_stride = kChannels * sizeof(float);
+    channel.user_pixel_stride = static_cast<std::int32_t>(names.size() * sizeof(float));
     channel.user_line_stride = channel.user_pixel_stride * size_.x;
   }
   require(exr_decoding_choose_default_routines(context_, kPart, &decoder));
@@ -191,8 +199,9 @@ void ExrFile::require_finite(const ChannelNames& names, const std::vector<float>
   const auto width = std::size_t(size_.x);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
-      refuse(std::string(names[i % kChannels]) + ": found a value that is not finite in pixel (" +
-                 std::to_string(i / kChannels % width) + ", " + std::to_string(i / kChannels / width) + ")",
+      refuse(names[i % names.size()] + ": found a value that is not finite in pixel (" +
+                 std::to_string(i / names.size() % width) + ", " + std::to_string(i / names.size() / width) +
+                 ")",
              "finite numbers in every pixel");
 }
 
@@ -201,7 +210,7 @@ RadianceImage read_exr_rgb(const std::filesystem::path& path, const ExrLimits& l
   RadianceImage image;
   image.width = file.size().x;
   image.height = file.size().y;
-  image.rgb = file.channels(kExrColour);
+  image.rgb = file.channels({std::begin(kExrColour), std::end(kExrColour)});
   return image;
 }
 

@@ -29,8 +29,7 @@ struct ExrLimits {
 /// memory for it. DWA compression is refused: version 3.1 of these functions cannot read it.
 class ExrFile {
  public:
-  static constexpr std::size_t kChannels = 3;
-  using ChannelNames = const char* const[kChannels];
+  using ChannelNames = std::vector<std::string>;
 
   /// Throws InputError for a file that is no OpenEXR file, is larger than the limits, or holds fewer bytes
   /// than its pixels need.
@@ -41,8 +40,10 @@ class ExrFile {
 
   /// Width and height in pixels.
   const glm::ivec2& size() const { return size_; }
-  /// Three channels, interleaved, the top row first. Throws InputError if one is missing or a value is not
-  /// finite.
+  /// The names of all channels, in alphabetical order.
+  ChannelNames channel_names() const;
+  /// The channels of those names, interleaved, the top row first. Throws InputError if one is missing or a
+  /// value is not finite.
   std::vector<float> channels(const ChannelNames& names) const;
   /// Attributes that are strings.
   std::map<std::string, std::string> texts() const;
@@ -57,11 +58,12 @@ class ExrFile {
   void require_compression() const;
   void require_size(const ExrLimits& limits);
   void require_bytes() const;
-  void require_channel(const char* name, const ChannelNames& names) const;
+  void require_channel(const std::string& name, const ChannelNames& names) const;
   void require_finite(const ChannelNames& names, const std::vector<float>& values) const;
   void read_lines(const ChannelNames& names, std::vector<float>& values) const;
   void read_tiles(const ChannelNames& names, std::vector<float>& values) const;
-  float* pixel(std::vector<float>& values, int column, int row) const;
+  /// @param channels interleaved in `values`
+  float* pixel(std::vector<float>& values, std::size_t channels, int column, int row) const;
   void read_chunk(const exr_chunk_info_t& chunk, const ChannelNames& names, float* first) const;
 
   std::filesystem::path path_;

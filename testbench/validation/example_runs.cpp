@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "firmware/examples/fft.hpp"
+#include "testbench/system/counter_random.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -15,13 +16,9 @@ using examples::Dgemm;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A pseudo-random number in [-1, 1) that depends only on its index: splitmix64 (Steele, Lea, Flood, 2014).
+/// A pseudo-random number in [-1, 1) that depends only on its index.
 double pseudo_random(std::uint64_t index) {
-  std::uint64_t bits = (index + 1) * 0x9e3779b97f4a7c15u;
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-  bits ^= bits >> 31;
-  return double(bits >> 11) * 0x1p-52 - 1;
+  return 2 * random_of(index) - 1;
 }
 
 template <class T>

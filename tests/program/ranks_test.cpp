@@ -50,6 +50,23 @@ TEST_F(Ranks, ShareTheSamplesOfARender) {
   EXPECT_EQ(hash("few.json"), hash("two.json")) << "more ranks than samples";
 }
 
+TEST_F(Ranks, ShareEachPassOfAnAdaptiveRender) {
+  const std::string common = "render " + kScene + " --size 12x10 --samples 64 --target-error 0.2 --stats ";
+  ASSERT_EQ(run_on_ranks(1, common + "one.json"), 0) << read("ranks_error.txt");
+  ASSERT_EQ(run_on_ranks(3, common + "three.json --exr map.exr"), 0) << read("ranks_error.txt");
+  EXPECT_EQ(hash("three.json"), hash("one.json"));
+  const Json three = Json::parse(read("three.json"));
+  EXPECT_EQ(three["parts"][0]["ranks"], 3);
+  EXPECT_LT(three["simulated_seconds"], Json::parse(read("one.json"))["simulated_seconds"]);
+  const std::string selective =
+      "render " + kScene + " --size 12x10 --samples 3 --importance map.exr --stats ";
+  ASSERT_EQ(run_on_ranks(1, selective + "one.json"), 0) << read("ranks_error.txt");
+  ASSERT_EQ(run_on_ranks(3, selective + "three.json"), 0) << read("ranks_error.txt");
+  EXPECT_EQ(hash("three.json"), hash("one.json"));
+  EXPECT_EQ(run_on_ranks(3, common + "t.json --importance none.exr"), 2);
+  EXPECT_EQ(run_on_ranks(3, common + "t.json --snapshots map.exr"), 2);
+}
+
 TEST_F(Ranks, ShareThePointsOfASweep) {
   write("s.toml", "scene = \"" + kScene +
                       "\"\nsize = \"8x6\"\nsamples = 2\naudit.share = 0.2\n"

@@ -204,9 +204,21 @@ void append(const AppendArguments& arguments) {
   cn::keep(finished, *arguments.finished);
 }
 
+void listed_sample(const ListedSampleArguments& arguments) {
+  const poly<std::int32_t> number = arguments.number.read();
+  arguments.place.write(place_of(arguments.next_listed, number, sizeof(CameraSampleRecord)));
+  cn::keep(number < arguments.started, *arguments.starts);
+}
+
+/// The sample with that number, of the list or in order.
+CameraSample next_sample(const ContinuePathsArguments& arguments, const poly<std::int32_t>& number) {
+  if (!arguments.is_listed) return camera_sample(*arguments.camera, arguments.camera_rays, number);
+  return {arguments.next_path.get(&PathRecord::pixel), arguments.next_path.get(&PathRecord::sample)};
+}
+
 /// The camera ray with that number begins a path.
 void start_path(const ContinuePathsArguments& arguments, const poly<std::int32_t>& number) {
-  const CameraSample at = camera_sample(*arguments.camera, arguments.camera_rays, number);
+  const CameraSample at = next_sample(arguments, number);
   const CameraRay ray = generate_camera_ray(*arguments.camera, arguments.sampler, arguments.seed, at);
   arguments.ray.set(&RayRecord::origin, ray.origin);
   arguments.ray.set(&RayRecord::direction, ray.direction);
@@ -364,6 +376,7 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<ShadeArguments, shade>("shade"),
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),
+      cn::kernel<ListedSampleArguments, listed_sample>("listed_sample"),
       cn::kernel<ContinuePathsArguments, continue_paths>("continue_paths"),
       cn::kernel<NumberedPlaceArguments, numbered_place>("finished_place"),
       cn::kernel<ListArguments, list>("list"),

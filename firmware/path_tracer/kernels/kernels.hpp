@@ -124,6 +124,15 @@ struct AppendArguments {
   LaneMask* finished = nullptr;  ///< the path ended or its slot is full
 };
 
+/// Path stage, before its second half, of a run with a list of camera samples: where the entries are.
+struct ListedSampleArguments {
+  PolyField<std::int32_t> number;  ///< ascending numbers of the lanes whose path ended
+  std::int32_t started = 0;        ///< paths to start, at most the number of PEs
+  MonoAddress next_listed = 0;
+  PolyField<MonoAddress> place;
+  LaneMask* starts = nullptr;
+};
+
 /// Path stage, second half: the next segment of each path, and a camera ray (camera_rays.hpp) in the slot of
 /// each path that ended.
 struct ContinuePathsArguments {
@@ -138,6 +147,7 @@ struct ContinuePathsArguments {
   std::uint64_t seed = 0;
   const CameraRecord* camera = nullptr;
   CameraRayOrder camera_rays;
+  bool is_listed = false;      ///< `next_path` names the pixel and sample already, not `camera_rays`
   std::int32_t remaining = 0;  ///< camera rays to generate, at most the number of PEs
   PolyPointer<PathRecord> next_path;
   bool path_has_tail = false;  ///< DirectionRecord, as `path` and `scatter`
@@ -225,6 +235,7 @@ struct Kernels {
   cn::Kernel<ShadeArguments> shade;
   cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;
+  cn::Kernel<ListedSampleArguments> listed_sample;
   cn::Kernel<ContinuePathsArguments> continue_paths;
   cn::Kernel<NumberedPlaceArguments> finished_place;
   cn::Kernel<ListArguments> list;

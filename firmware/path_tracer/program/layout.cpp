@@ -14,10 +14,11 @@ int record_steps(const ProgramConfig& config) {
 
 namespace {
 
-/// Hands out mono memory from address 0 upwards, in whole DDR packets.
+/// Hands out mono memory upwards from an address, in whole DDR packets.
 class MonoAllocator {
  public:
-  explicit MonoAllocator(std::vector<Layout::Region>& regions) : regions_(regions) {}
+  explicit MonoAllocator(std::vector<Layout::Region>& regions, std::uint64_t next = 0)
+      : regions_(regions), next_(next) {}
 
   /// @param record_bytes of a record, with its tail
   template <class T>
@@ -33,7 +34,7 @@ class MonoAllocator {
  private:
   static constexpr std::uint64_t kAlignment = 64;
   std::vector<Layout::Region>& regions_;
-  std::uint64_t next_ = 0;
+  std::uint64_t next_;
 };
 
 /// Blocks of the treelet queues' pool: enough for all rays, packed, and a few more for partly full blocks of
@@ -127,6 +128,12 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   for (auto& half : layout.results) half = memory.take<RadianceRecord>("results", slots);
   layout.total_bytes = memory.used_bytes();
   return layout;
+}
+
+void add_camera_samples(Layout& layout, std::uint64_t count) {
+  MonoAllocator memory(layout.regions, layout.total_bytes);
+  layout.camera_samples = memory.take<CameraSampleRecord>("camera samples", count);
+  layout.total_bytes = memory.used_bytes();
 }
 
 }  // namespace path_tracer

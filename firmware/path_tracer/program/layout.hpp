@@ -31,7 +31,8 @@ struct Layout {
   cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i, or of classes 0..i
   cn::MonoPointer<LightClass> light_classes;
   cn::MonoPointer<std::uint64_t> nodes;
-  cn::MonoPointer<std::uint64_t> textures;  ///< footprints of texels (records/tails.hpp)
+  cn::MonoPointer<std::uint64_t> textures;             ///< footprints of texels (records/tails.hpp)
+  cn::MonoPointer<CameraSampleRecord> camera_samples;  ///< behind everything else, of a run with a list
   int triangle_count =
       0;  ///< with a tree, in order of leaves; behind them lie kLightRun triangles for each light
   int light_count = 0;
@@ -91,6 +92,9 @@ inline constexpr int kFirstMaterialKind = 2;
 inline int hit_kinds(const Features& features) {
   return kFirstMaterialKind + features.shading_kinds;
 }
+
+/// Adds room for a list of camera samples (Work).
+void add_camera_samples(Layout& layout, std::uint64_t count);
 
 /// Blocks of the traversal bin's ring: enough for all rays and for blocks that are being loaded or saved.
 int traversal_bin_blocks(const ProgramConfig& config);

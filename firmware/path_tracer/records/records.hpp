@@ -30,6 +30,12 @@ struct CameraRecord {
   std::int32_t unused = 0;
 };
 
+/// A sample of a pixel, where a path begins: an entry of the list that the host may write (Work).
+struct CameraSampleRecord {
+  std::int32_t pixel = 0;
+  std::int32_t sample = 0;
+};
+
 /// A triangle for intersection (triangle.hpp); made by triangle_record(). Triangles that share an edge or lie
 /// on one another in one plane share a face. A ray that leaves a face ignores it, so no distance threshold is
 /// needed to keep a surface from shadowing itself.
@@ -152,7 +158,7 @@ struct DirectLightRecord {
   vec3<double> radiance{};
 };
 
-/// Record of the path bin: the path in a slot, and how far it is.
+/// Record of the path bin: the path in a slot, and how far it is. It begins as a CameraSampleRecord does.
 struct PathRecord {
   std::int32_t pixel = 0;
   std::int32_t sample = 0;
@@ -163,6 +169,8 @@ struct PathRecord {
   double light_u = 0;  ///< point on the light for the shadow ray of the next vertex
   double light_v = 0;
 };
+static_assert(offsetof(PathRecord, pixel) == offsetof(CameraSampleRecord, pixel) &&
+              offsetof(PathRecord, sample) == offsetof(CameraSampleRecord, sample));
 
 /// Vertex of a path; slot_vertices of them for each slot.
 struct VertexRecord {

@@ -3,7 +3,8 @@
 namespace path_tracer {
 
 CameraRays::CameraRays(const Work& work, int pixels)
-    : total_(std::uint64_t(work.samples) * std::uint64_t(pixels)),
+    : total_(work.listed_samples > 0 ? work.listed_samples
+                                     : std::uint64_t(work.samples) * std::uint64_t(pixels)),
       first_sample_(work.first_sample),
       pixels_(pixels) {}
 

@@ -6,7 +6,8 @@
 
 namespace path_tracer {
 
-/// The camera rays still to be issued: sample by sample, and pixel by pixel within a sample.
+/// The camera rays still to be issued: sample by sample, and pixel by pixel within a sample; or those of a
+/// list, in its order.
 class CameraRays {
  public:
   CameraRays(const Work& work, int pixels);

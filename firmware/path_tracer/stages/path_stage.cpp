@@ -13,6 +13,7 @@ PathStage::PathStage(const StageContext& context, RayStore& rays, const Work& wo
                      const CameraRecord& camera = *context.machine.read_mono(context.layout.camera);
                      return camera.width * camera.height;
                    }()),
+      is_listed_(work.listed_samples > 0),
       number_{context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes},
       segments_(std::size_t(context.config.bin_blocks) * std::size_t(context.machine.num_pes())) {
   const int pixels = camera_rays_.pixels();
@@ -123,12 +124,30 @@ LightTable PathStage::light_table() const {
   return table;
 }
 
+/// Gathers the list's entries for the paths that start, straight to where their records are made. The step
+/// waits for them: which slots start a path is known no earlier. Their places lie where the rays will.
+void PathStage::load_listed(std::uint64_t step, int block, std::int32_t started) {
+  const Saves to = saves(step);
+  LaneMask starts;
+  ListedSampleArguments arguments;
+  arguments.number = number_;
+  arguments.started = started;
+  arguments.next_listed = (context_.layout.camera_samples + camera_rays_.issued()).address;
+  arguments.place = PolyField<MonoAddress>{to.ray.ray.span().offset_bytes};
+  arguments.starts = &starts;
+  context_.machine.run(context_.kernels.listed_sample, arguments, ended_);
+  context_.loads.copy_m2p(step, block, with_tail(to.path, int{sizeof(CameraSampleRecord)}),
+                          context_.machine.places_in(arguments.place), starts);
+  context_.loads.wait(step);
+}
+
 void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
   const Saves to = saves(step);
   const auto started = static_cast<std::int32_t>(
       std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
+  if (is_listed_ && started > 0) load_listed(step, block, started);
   continued_ = LaneMask{};
   ContinuePathsArguments arguments;
   arguments.path = from.path;
@@ -146,6 +165,7 @@ void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   arguments.seed = context_.config.seed;
   arguments.camera_rays = {camera_rays_.next_pixel(), camera_rays_.next_sample(),
                            context_.config.pixel_stride % camera_rays_.pixels()};
+  arguments.is_listed = is_listed_;
   arguments.remaining = started;
   arguments.next_path = to.path;
   arguments.path_has_tail = context_.layout.sizes.path_has_tail();

@@ -58,11 +58,13 @@ class PathStage : public Stage {
   void append_vertices(std::uint64_t step, int block);
   void list_finished(std::uint64_t step);
   LightTable light_table() const;
+  void load_listed(std::uint64_t step, int block, std::int32_t started);
   void continue_paths(std::uint64_t step, int block, int ended_count);
   void count_segments(int block);
 
   RayStore& rays_;
   CameraRays camera_rays_;
+  bool is_listed_;  ///< camera rays follow a list (Work)
   PolyField<std::int32_t> number_;
   // The current block, from process to save:
   LaneMask appended_;

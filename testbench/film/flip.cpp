@@ -20,7 +20,7 @@ Kernel kernel_of(int radius, Weight&& weight) {
   return kernel;
 }
 
-double sum(const Kernel& kernel) {
+double weight_of(const Kernel& kernel) {
   double total = 0;
   for (const double weight : kernel) total += weight;
   return total;
@@ -141,7 +141,7 @@ class ContrastSensitivity {
     std::vector<double> weights;
     double total = 0;
     for (const Gaussian& gaussian : gaussians) {
-      const double one_row = sum(kernel(gaussian));
+      const double one_row = weight_of(kernel(gaussian));
       weights.push_back(gaussian.a * std::sqrt(glm::pi<double>() / gaussian.b) * one_row * one_row);
       total += weights.back();
     }

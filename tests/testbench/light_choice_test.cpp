@@ -56,12 +56,16 @@ TEST(LightChoice, ManyLightsFallIntoClassesWithinAFactorOfTwo) {
   EXPECT_NEAR(sum, 1.0, 1e-12);
 }
 
-TEST(LightChoice, AWeakLightAmongManyKeepsAChance) {
-  std::vector<double> weights(100000, 1e-30);
-  weights[77] = 1.0;
-  const LightChoice choice = choose_by(weights);
+/// 32-bit random numbers find each of them.
+TEST(LightChoice, WeakLightsAmongManyKeepAChance) {
+  testbench::Emitter emitter;
+  emitter.triangles = {0};
+  emitter.power = 1e-30;
+  std::vector<testbench::Emitter> emitters(100000, emitter);
+  emitters[77].power = 1.0;
+  const LightChoice choice = choose_by(testbench::light_weights(Scene{}, emitters));
   EXPECT_EQ(choice.order[0], 77u);
-  for (const double probability : choice.probability) EXPECT_GT(probability, 0.0);
+  for (const double probability : choice.probability) ASSERT_GT(probability, 0x1p-24);
 }
 
 /// A room with a lamp, and a sealed box with another in it.

@@ -2,12 +2,12 @@
 
 #include <glm/glm.hpp>
 
-#include "firmware/cn/language/vec3.hpp"
+#include "firmware/path_tracer/records/records.hpp"
 
 namespace testbench {
 
 /// A vector as records in mono memory hold it.
-inline cn::vec3<double> to_record(const glm::dvec3& v) {
+inline path_tracer::vec3<double> to_record(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 

@@ -208,6 +208,39 @@ TEST_F(Sampling, WhatACdfEntryLeavesIsUniformAgain) {
   EXPECT_EQ(rest, u);
 }
 
+/// u falls into a class by the cdf, then into one of its lights, which have equal parts of the class; what is
+/// left of u is its position in that part.
+TEST_F(Sampling, LightClassesAreCutIntoEqualParts) {
+  const double cdf[] = {0.5, 0.6, 1.0};
+  const path_tracer::LightClass classes[] = {{0, 2}, {2, 1}, {3, 1000}};
+  PerPe<std::int32_t> entry = per_pe<std::int32_t>();
+  PerPe<double> rest = per_pe<double>();
+  for (int round = 0; round < 40; ++round) {
+    PerPe<double> u = uniform();
+    u[0] = kSmallest;
+    u[1] = kLargest;
+    u[2] = 0.5;
+    u[3] = 0.25;
+    run([&] {
+      const auto chosen = path_tracer::sample_light_class(cdf, classes, 3, load(u));
+      store(entry, chosen.entry);
+      store(rest, chosen.rest);
+    });
+    for (std::size_t pe = 0; pe < u.size(); ++pe) {
+      const int number = u[pe] < cdf[0] ? 0 : u[pe] < cdf[1] ? 1 : 2;
+      const path_tracer::LightClass& of = classes[number];
+      const double low = number == 0 ? 0.0 : cdf[number - 1];
+      const double part = (cdf[number] - low) / of.count;
+      const int in_class = entry[pe] - of.first;
+      ASSERT_GE(in_class, 0);
+      ASSERT_LT(in_class, of.count);
+      ASSERT_GE(rest[pe], 0.0);
+      ASSERT_LT(rest[pe], 1.0);
+      EXPECT_NEAR(low + (in_class + rest[pe]) * part, u[pe], 1e-12);
+    }
+  }
+}
+
 class CameraSampling : public Sampling {
  protected:
   /// A camera whose film coordinates can be read off its directions: (x, y, 1) to unit length.

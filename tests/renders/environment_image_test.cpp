@@ -159,6 +159,7 @@ TEST_F(EnvironmentImageOnChip, ChipAndTraversalsGiveOneImage) {
       options.program.n = n;
       EXPECT_EQ(testbench::render_natively(scene, options).film.rgb(), expected);
       new_context();
+      options.check_hazards = true;
       EXPECT_EQ(testbench::render_on_chip(scene, options).film.rgb(), expected);
     }
   }

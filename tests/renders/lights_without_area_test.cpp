@@ -195,6 +195,7 @@ TEST_F(LightsWithoutAreaOnChip, AllTraversalsGiveOneImage) {
   }
   options.program.traversal = path_tracer::Traversal::refill;
   new_context();
+  options.check_hazards = true;
   EXPECT_EQ(testbench::render_on_chip(scene, options).film.rgb(), expected.film.rgb());
 }
 

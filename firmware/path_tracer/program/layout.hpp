@@ -13,7 +13,7 @@ namespace path_tracer {
 struct SceneCounts {
   int triangles = 0;
   int lights = 0;
-  int tree_slots = 0;     ///< nodes; 0 without a tree
+  int tree_slots = 0;  ///< nodes; 0 without a tree
   bool has_layers = false;
   std::uint64_t texture_bytes = 0;
   std::uint64_t environment_texels = 0;

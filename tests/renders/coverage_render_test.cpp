@@ -374,6 +374,36 @@ TEST_F(CoverageRenders, AreTheSameOnTheChipWithoutHazards) {
   }
 }
 
+/// Hits may wait in bins of their kind, rays that pass among them.
+TEST_F(CoverageRenders, AreTheSameHoweverHitsAreBinned) {
+  const Scene scene = covered_squares({8, 6});
+  const std::string expected =
+      testbench::render_natively(scene, options_for(Traversal::brute_force, 1)).film.sha256();
+  for (const path_tracer::Shading shading :
+       {path_tracer::Shading::every_lobe, path_tracer::Shading::material_bins,
+        path_tracer::Shading::texture_bins}) {
+    for (const Traversal traversal : {Traversal::brute_force, Traversal::refill}) {
+      for (const int n : {0, 2}) {
+        RenderOptions options = options_for(traversal, n);
+        options.program.shading = shading;
+        EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), expected) << int(shading) << n;
+        options.check_hazards = true;
+        new_context();
+        EXPECT_EQ(testbench::render_on_chip(scene, options).film.sha256(), expected) << int(shading) << n;
+      }
+    }
+  }
+}
+
+/// Where a segment passes, no shadow ray is left out, for none is due.
+TEST_F(CoverageRenders, SegmentsThatPassAreNoCulledShadowRays) {
+  Scene scene = floor_under_lamp();
+  for (const double z : {1.0, 2.0, 3.0}) add_square(scene, z, 1.0, sheet(0.0));
+  RenderOptions options = test_support::render_options(Program::full, 16);
+  options.program.cull_shadow_rays = false;
+  EXPECT_EQ(testbench::render_natively(scene, options).counts.culled_shadow_rays, 0u);
+}
+
 /// Alpha that lets nothing through is no coverage, whatever the mode.
 TEST_F(CoverageRenders, SurfacesThatAreAllThereCostNothing) {
   Scene scene = floor_under_lamp();

@@ -147,6 +147,44 @@ TEST_F(CoverageRenders, AShadowIsAsDarkAsItsSheetsAreThere) {
   }
 }
 
+/// A floor without a lamp, under lights without triangles; what is behind a near light is not in its way.
+TEST_F(CoverageRenders, LightsWithoutTrianglesShineThroughSheets) {
+  testbench::Light point;
+  point.position = {0.2, 0.1, 9.0};
+  point.intensity = glm::dvec3(50.0);
+  testbench::Light parallel;
+  parallel.kind = testbench::LightKind::directional;
+  parallel.direction = glm::normalize(glm::dvec3(0.3, 0.1, -1.0));
+  testbench::Light sun = parallel;
+  sun.kind = testbench::LightKind::sun;
+  sun.angular_diameter_radians = 0.2;
+  testbench::RadianceImage sky{4, 2, std::vector<float>(24, 1.0f)};
+  sky.rgb[3] = 9.0f;
+  for (const int light : {0, 1, 2, 3, 4}) {
+    SCOPED_TRACE(light);
+    Scene scene = floor_under_lamp();
+    if (light < 4) scene.triangles.resize(2);
+    if (light == 0 || light == 4) scene.lights = {point};
+    if (light == 1) scene.lights = {parallel};
+    if (light == 2) scene.lights = {sun};
+    if (light == 3) scene.environment.image = sky;
+    if (light == 3) scene.environment.rotation = {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+    const Mean bare = mean_of(scene, Program::full, Estimator::per_lobe, 4096);
+    EXPECT_GT(bare.value, 0.01);
+    double expected = bare.value;
+    for (const double alpha : {0.3, 0.6}) {
+      add_square(scene, 6.0 + alpha, 4000.0, sheet(alpha), alpha < 0.5);
+      expected *= 1.0 - alpha;
+      const Mean mean = mean_of(scene, Program::full, Estimator::per_lobe, 4096);
+      EXPECT_NEAR(mean.value, expected, 5 * std::sqrt(mean.variance + bare.variance));
+    }
+    if (light != 0) continue;
+    add_square(scene, 9.5, 4000.0, sheet(0.9));
+    const Mean mean = mean_of(scene, Program::full, Estimator::per_lobe, 4096);
+    EXPECT_NEAR(mean.value, expected, 5 * std::sqrt(mean.variance + bare.variance));
+  }
+}
+
 /// Four sheets in the way to the lamp, the lowest of which is also between camera and floor.
 TEST_F(CoverageRenders, EitherSamplerDecidesLayerByLayer) {
   Scene scene = floor_under_lamp();

@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/run/render.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/systemc_fixture.hpp"
 
 namespace coverage_render_test {
 
@@ -21,8 +20,6 @@ using testbench::Film;
 using testbench::Material;
 using testbench::RenderOptions;
 using testbench::Scene;
-
-class CoverageRenders : public test_support::SystemCFixture {};
 
 Material sheet(double alpha) {
   Material material;
@@ -94,7 +91,7 @@ void for_each_way(const Test& test) {
     test(Program::full, estimator);
 }
 
-TEST_F(CoverageRenders, SheetsPassTheProductOfWhatTheyLeaveOpen) {
+TEST(CoverageRenders, SheetsPassTheProductOfWhatTheyLeaveOpen) {
   for (const bool is_lamp : {true, false}) {
     Scene scene = seen_from_above({4, 4});
     if (is_lamp)
@@ -116,7 +113,7 @@ TEST_F(CoverageRenders, SheetsPassTheProductOfWhatTheyLeaveOpen) {
 }
 
 /// A sheet that emits shows its emission where it is, and what is behind it elsewhere.
-TEST_F(CoverageRenders, AGlowingSheetMixesItsLightWithWhatIsBehind) {
+TEST(CoverageRenders, AGlowingSheetMixesItsLightWithWhatIsBehind) {
   Scene scene = seen_from_above({4, 4});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   Material glowing = sheet(0.25);
@@ -130,7 +127,7 @@ TEST_F(CoverageRenders, AGlowingSheetMixesItsLightWithWhatIsBehind) {
 
 /// The lamp's light on the floor, through one sheet and two. The sheets reflect nothing, so that all light
 /// comes from the lamp.
-TEST_F(CoverageRenders, AShadowIsAsDarkAsItsSheetsAreThere) {
+TEST(CoverageRenders, AShadowIsAsDarkAsItsSheetsAreThere) {
   Scene scene = floor_under_lamp();
   const Mean bare = mean_of(scene, Program::full, Estimator::light, 4096);
   double expected = bare.value;
@@ -147,7 +144,7 @@ TEST_F(CoverageRenders, AShadowIsAsDarkAsItsSheetsAreThere) {
 }
 
 /// A floor without a lamp, under lights without triangles; what is behind a near light is not in its way.
-TEST_F(CoverageRenders, LightsWithoutTrianglesShineThroughSheets) {
+TEST(CoverageRenders, LightsWithoutTrianglesShineThroughSheets) {
   testbench::Light point;
   point.position = {0.2, 0.1, 9.0};
   point.intensity = glm::dvec3(50.0);
@@ -185,7 +182,7 @@ TEST_F(CoverageRenders, LightsWithoutTrianglesShineThroughSheets) {
 }
 
 /// Four sheets in the way to the lamp, the lowest of which is also between camera and floor.
-TEST_F(CoverageRenders, EitherSamplerDecidesLayerByLayer) {
+TEST(CoverageRenders, EitherSamplerDecidesLayerByLayer) {
   Scene scene = floor_under_lamp();
   scene.film = {32, 32};
   const Mean bare = mean_of(scene, Program::full, Estimator::light, 64);
@@ -205,7 +202,7 @@ TEST_F(CoverageRenders, EitherSamplerDecidesLayerByLayer) {
 }
 
 /// A lamp of which half is there lights like one of half the radiance, by hits and by shadow rays.
-TEST_F(CoverageRenders, ALampThatIsHalfThereGivesHalfTheLight) {
+TEST(CoverageRenders, ALampThatIsHalfThereGivesHalfTheLight) {
   Scene scene = floor_under_lamp();
   const Mean bare = mean_of(scene, Program::full, Estimator::light, 16384);
   scene.materials.back().alpha_mode = AlphaMode::blend;
@@ -219,7 +216,7 @@ TEST_F(CoverageRenders, ALampThatIsHalfThereGivesHalfTheLight) {
 
 /// Hits and shadow rays are weighed by how far the light is from where the direction was chosen, not from the
 /// last sheet: a glossy floor close to a large lamp, where both weights matter.
-TEST_F(CoverageRenders, WaysAgreeOnGlossBehindSheets) {
+TEST(CoverageRenders, WaysAgreeOnGlossBehindSheets) {
   Scene scene = seen_from_above({8, 8});
   Material floor;
   floor.reflectance = glm::dvec3(0.9);
@@ -238,7 +235,7 @@ TEST_F(CoverageRenders, WaysAgreeOnGlossBehindSheets) {
 }
 
 /// A board of a texel for each pixel, in front of a lamp: no random number decides.
-TEST_F(CoverageRenders, AMaskShowsAPixelOrLeavesItOpen) {
+TEST(CoverageRenders, AMaskShowsAPixelOrLeavesItOpen) {
   Scene scene = seen_from_above({8, 8});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   Material board = lamp(1.0);
@@ -271,7 +268,7 @@ TEST_F(CoverageRenders, AMaskShowsAPixelOrLeavesItOpen) {
 }
 
 /// A mask's alpha that equals the cutoff shows the surface; one that is below shows none of it, to the bit.
-TEST_F(CoverageRenders, AMaskWithoutTextureIsThereOrNot) {
+TEST(CoverageRenders, AMaskWithoutTextureIsThereOrNot) {
   Scene scene = seen_from_above({2, 2});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   add_square(scene, 1.0, 1.0, sheet(0.25));
@@ -284,7 +281,7 @@ TEST_F(CoverageRenders, AMaskWithoutTextureIsThereOrNot) {
 }
 
 /// The camera is in boxes that are not there. No roulette ends a path, and each pass makes its way.
-TEST_F(CoverageRenders, PathsLeaveBoxesThatAreNotThere) {
+TEST(CoverageRenders, PathsLeaveBoxesThatAreNotThere) {
   Scene scene = test_support::closed_cube(0.5, 0.0, {8, 8});
   const std::vector<testbench::Triangle> cube = scene.triangles;
   for (const double scale : {1.5, 2.0, 0.999999})
@@ -304,7 +301,7 @@ TEST_F(CoverageRenders, PathsLeaveBoxesThatAreNotThere) {
 }
 
 /// A light of two sides is two sheets back to back (testbench/scene/gltf_mesh.cpp). It is there once.
-TEST_F(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
+TEST(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
   for (const bool is_seen_from_front : {true, false}) {
     Scene scene = seen_from_above({4, 4});
     add_square(scene, 0.0, 1.0, lamp(3.0));
@@ -321,7 +318,7 @@ TEST_F(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
 }
 
 /// Sheets back to back in one plane, as leaves often are, are one surface to a ray.
-TEST_F(CoverageRenders, SheetsThatCoincideAreThereOnce) {
+TEST(CoverageRenders, SheetsThatCoincideAreThereOnce) {
   Scene seen = seen_from_above({4, 4});
   add_square(seen, 0.0, 1.0, lamp(3.0));
   Scene shadow = floor_under_lamp();
@@ -339,7 +336,7 @@ TEST_F(CoverageRenders, SheetsThatCoincideAreThereOnce) {
 }
 
 /// A cloth close to a wall hides it in part; the wall behind is not passed.
-TEST_F(CoverageRenders, ASheetJustAboveAWallLeavesTheWall) {
+TEST(CoverageRenders, ASheetJustAboveAWallLeavesTheWall) {
   Scene scene = seen_from_above({4, 4});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   add_square(scene, 1e-9, 1.0, sheet(0.25));
@@ -349,7 +346,7 @@ TEST_F(CoverageRenders, ASheetJustAboveAWallLeavesTheWall) {
 }
 
 /// Where a segment passes, no shadow ray is left out, for none is due.
-TEST_F(CoverageRenders, SegmentsThatPassAreNoCulledShadowRays) {
+TEST(CoverageRenders, SegmentsThatPassAreNoCulledShadowRays) {
   Scene scene = floor_under_lamp();
   for (const double z : {1.0, 2.0, 3.0}) add_square(scene, z, 1.0, sheet(0.0));
   RenderOptions options = test_support::render_options(Program::full, 16);
@@ -358,7 +355,7 @@ TEST_F(CoverageRenders, SegmentsThatPassAreNoCulledShadowRays) {
 }
 
 /// Alpha that lets nothing through is no coverage, whatever the mode.
-TEST_F(CoverageRenders, SurfacesThatAreAllThereCostNothing) {
+TEST(CoverageRenders, SurfacesThatAreAllThereCostNothing) {
   Scene scene = floor_under_lamp();
   scene.materials[0].alpha_mode = AlphaMode::blend;
   EXPECT_TRUE(testbench::features_of(scene, {}).plain());

@@ -166,7 +166,7 @@ class RayQueueTest : public testing::Test {
       const double x = 100.0 * double(step) + pe;
       std::memcpy(&machine->poly_memory().word(pe, room.ray.span().offset_bytes), &x, sizeof(x));
     }
-    queue->save(*saves, step, block, room, light_place, with_ray);
+    queue->save(*saves, step, {block}, room, light_place, with_ray);
   }
   QueuedRay queued(int index) { return *machine->read_mono(layout.ray_queue + std::uint64_t(index), 1); }
 

@@ -2,28 +2,24 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/run/render.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/systemc_fixture.hpp"
 
 namespace coverage_render_test {
 
 using path_tracer::Estimator;
 using path_tracer::Program;
 using path_tracer::Sampler;
-using path_tracer::Traversal;
 using testbench::AlphaMode;
 using testbench::Film;
 using testbench::Material;
 using testbench::RenderOptions;
 using testbench::Scene;
-
-class CoverageRenders : public test_support::SystemCFixture {};
 
 Material sheet(double alpha) {
   Material material;
@@ -95,7 +91,7 @@ void for_each_way(const Test& test) {
     test(Program::full, estimator);
 }
 
-TEST_F(CoverageRenders, SheetsPassTheProductOfWhatTheyLeaveOpen) {
+TEST(CoverageRenders, SheetsPassTheProductOfWhatTheyLeaveOpen) {
   for (const bool is_lamp : {true, false}) {
     Scene scene = seen_from_above({4, 4});
     if (is_lamp)
@@ -117,7 +113,7 @@ TEST_F(CoverageRenders, SheetsPassTheProductOfWhatTheyLeaveOpen) {
 }
 
 /// A sheet that emits shows its emission where it is, and what is behind it elsewhere.
-TEST_F(CoverageRenders, AGlowingSheetMixesItsLightWithWhatIsBehind) {
+TEST(CoverageRenders, AGlowingSheetMixesItsLightWithWhatIsBehind) {
   Scene scene = seen_from_above({4, 4});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   Material glowing = sheet(0.25);
@@ -131,7 +127,7 @@ TEST_F(CoverageRenders, AGlowingSheetMixesItsLightWithWhatIsBehind) {
 
 /// The lamp's light on the floor, through one sheet and two. The sheets reflect nothing, so that all light
 /// comes from the lamp.
-TEST_F(CoverageRenders, AShadowIsAsDarkAsItsSheetsAreThere) {
+TEST(CoverageRenders, AShadowIsAsDarkAsItsSheetsAreThere) {
   Scene scene = floor_under_lamp();
   const Mean bare = mean_of(scene, Program::full, Estimator::light, 4096);
   double expected = bare.value;
@@ -147,8 +143,46 @@ TEST_F(CoverageRenders, AShadowIsAsDarkAsItsSheetsAreThere) {
   }
 }
 
+/// A floor without a lamp, under lights without triangles; what is behind a near light is not in its way.
+TEST(CoverageRenders, LightsWithoutTrianglesShineThroughSheets) {
+  testbench::Light point;
+  point.position = {0.2, 0.1, 9.0};
+  point.intensity = glm::dvec3(50.0);
+  testbench::Light parallel;
+  parallel.kind = testbench::LightKind::directional;
+  parallel.direction = glm::normalize(glm::dvec3(0.3, 0.1, -1.0));
+  testbench::Light sun = parallel;
+  sun.kind = testbench::LightKind::sun;
+  sun.angular_diameter_radians = 0.2;
+  testbench::RadianceImage sky{4, 2, std::vector<float>(24, 1.0f)};
+  sky.rgb[3] = 9.0f;
+  for (const int light : {0, 1, 2, 3, 4}) {
+    SCOPED_TRACE(light);
+    Scene scene = floor_under_lamp();
+    if (light < 4) scene.triangles.resize(2);
+    if (light == 0 || light == 4) scene.lights = {point};
+    if (light == 1) scene.lights = {parallel};
+    if (light == 2) scene.lights = {sun};
+    if (light == 3) scene.environment.image = sky;
+    if (light == 3) scene.environment.rotation = {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+    const Mean bare = mean_of(scene, Program::full, Estimator::per_lobe, 4096);
+    EXPECT_GT(bare.value, 0.01);
+    double expected = bare.value;
+    for (const double alpha : {0.3, 0.6}) {
+      add_square(scene, 6.0 + alpha, 4000.0, sheet(alpha), alpha < 0.5);
+      expected *= 1.0 - alpha;
+      const Mean mean = mean_of(scene, Program::full, Estimator::per_lobe, 4096);
+      EXPECT_NEAR(mean.value, expected, 5 * std::sqrt(mean.variance + bare.variance));
+    }
+    if (light != 0) continue;
+    add_square(scene, 9.5, 4000.0, sheet(0.9));
+    const Mean mean = mean_of(scene, Program::full, Estimator::per_lobe, 4096);
+    EXPECT_NEAR(mean.value, expected, 5 * std::sqrt(mean.variance + bare.variance));
+  }
+}
+
 /// Four sheets in the way to the lamp, the lowest of which is also between camera and floor.
-TEST_F(CoverageRenders, EitherSamplerDecidesLayerByLayer) {
+TEST(CoverageRenders, EitherSamplerDecidesLayerByLayer) {
   Scene scene = floor_under_lamp();
   scene.film = {32, 32};
   const Mean bare = mean_of(scene, Program::full, Estimator::light, 64);
@@ -168,7 +202,7 @@ TEST_F(CoverageRenders, EitherSamplerDecidesLayerByLayer) {
 }
 
 /// A lamp of which half is there lights like one of half the radiance, by hits and by shadow rays.
-TEST_F(CoverageRenders, ALampThatIsHalfThereGivesHalfTheLight) {
+TEST(CoverageRenders, ALampThatIsHalfThereGivesHalfTheLight) {
   Scene scene = floor_under_lamp();
   const Mean bare = mean_of(scene, Program::full, Estimator::light, 16384);
   scene.materials.back().alpha_mode = AlphaMode::blend;
@@ -182,7 +216,7 @@ TEST_F(CoverageRenders, ALampThatIsHalfThereGivesHalfTheLight) {
 
 /// Hits and shadow rays are weighed by how far the light is from where the direction was chosen, not from the
 /// last sheet: a glossy floor close to a large lamp, where both weights matter.
-TEST_F(CoverageRenders, WaysAgreeOnGlossBehindSheets) {
+TEST(CoverageRenders, WaysAgreeOnGlossBehindSheets) {
   Scene scene = seen_from_above({8, 8});
   Material floor;
   floor.reflectance = glm::dvec3(0.9);
@@ -201,7 +235,7 @@ TEST_F(CoverageRenders, WaysAgreeOnGlossBehindSheets) {
 }
 
 /// A board of a texel for each pixel, in front of a lamp: no random number decides.
-TEST_F(CoverageRenders, AMaskShowsAPixelOrLeavesItOpen) {
+TEST(CoverageRenders, AMaskShowsAPixelOrLeavesItOpen) {
   Scene scene = seen_from_above({8, 8});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   Material board = lamp(1.0);
@@ -234,7 +268,7 @@ TEST_F(CoverageRenders, AMaskShowsAPixelOrLeavesItOpen) {
 }
 
 /// A mask's alpha that equals the cutoff shows the surface; one that is below shows none of it, to the bit.
-TEST_F(CoverageRenders, AMaskWithoutTextureIsThereOrNot) {
+TEST(CoverageRenders, AMaskWithoutTextureIsThereOrNot) {
   Scene scene = seen_from_above({2, 2});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   add_square(scene, 1.0, 1.0, sheet(0.25));
@@ -247,7 +281,7 @@ TEST_F(CoverageRenders, AMaskWithoutTextureIsThereOrNot) {
 }
 
 /// The camera is in boxes that are not there. No roulette ends a path, and each pass makes its way.
-TEST_F(CoverageRenders, PathsLeaveBoxesThatAreNotThere) {
+TEST(CoverageRenders, PathsLeaveBoxesThatAreNotThere) {
   Scene scene = test_support::closed_cube(0.5, 0.0, {8, 8});
   const std::vector<testbench::Triangle> cube = scene.triangles;
   for (const double scale : {1.5, 2.0, 0.999999})
@@ -267,7 +301,7 @@ TEST_F(CoverageRenders, PathsLeaveBoxesThatAreNotThere) {
 }
 
 /// A light of two sides is two sheets back to back (testbench/scene/gltf_mesh.cpp). It is there once.
-TEST_F(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
+TEST(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
   for (const bool is_seen_from_front : {true, false}) {
     Scene scene = seen_from_above({4, 4});
     add_square(scene, 0.0, 1.0, lamp(3.0));
@@ -284,7 +318,7 @@ TEST_F(CoverageRenders, ALightOfTwoSidesIsThereOnce) {
 }
 
 /// Sheets back to back in one plane, as leaves often are, are one surface to a ray.
-TEST_F(CoverageRenders, SheetsThatCoincideAreThereOnce) {
+TEST(CoverageRenders, SheetsThatCoincideAreThereOnce) {
   Scene seen = seen_from_above({4, 4});
   add_square(seen, 0.0, 1.0, lamp(3.0));
   Scene shadow = floor_under_lamp();
@@ -302,7 +336,7 @@ TEST_F(CoverageRenders, SheetsThatCoincideAreThereOnce) {
 }
 
 /// A cloth close to a wall hides it in part; the wall behind is not passed.
-TEST_F(CoverageRenders, ASheetJustAboveAWallLeavesTheWall) {
+TEST(CoverageRenders, ASheetJustAboveAWallLeavesTheWall) {
   Scene scene = seen_from_above({4, 4});
   add_square(scene, 0.0, 1.0, lamp(3.0));
   add_square(scene, 1e-9, 1.0, sheet(0.25));
@@ -311,71 +345,17 @@ TEST_F(CoverageRenders, ASheetJustAboveAWallLeavesTheWall) {
   EXPECT_NEAR(mean.value, 0.75 * 3.0, 5 * std::sqrt(mean.variance));
 }
 
-/// Squares with textures in every slot, normal maps among them, some with masks, some there by chance, a lamp
-/// among them.
-Scene covered_squares(testbench::FilmSize film) {
-  Scene scene = test_support::textured_squares(film, true);
-  for (std::size_t i = 1; i < scene.materials.size(); ++i) {
-    Material& material = scene.materials[i];
-    if (i < 7) material.textures.normal.texture = 2;
-    if (i == 2) continue;  // opaque
-    material.alpha_mode = i % 3 == 0 ? AlphaMode::mask : AlphaMode::blend;
-    material.alpha = i % 2 == 0 ? 1.0 : 0.6;
-    if (i == 5) continue;
-    material.textures.alpha.texture = 1;
-    material.textures.alpha.channel = 3;
-  }
-  return scene;
-}
-
-RenderOptions options_for(Traversal traversal, int n) {
-  RenderOptions options = test_support::render_options(Program::full, 4);
-  options.chip.poly.sram_bytes = 32768;
-  options.program.traversal = traversal;
-  options.program.n = n;
-  options.program.bin_blocks = std::max(n, 2);
-  options.program.slot_vertices = 4;
-  return options;
-}
-
-constexpr Traversal kTraversals[] = {Traversal::brute_force, Traversal::temporary_bin,   Traversal::refill,
-                                     Traversal::lock_step,   Traversal::shared_treelets, Traversal::packets};
-
-TEST_F(CoverageRenders, AreTheSameForEveryTraversalDepthOfBufferingAndWidth) {
-  const Scene scene = covered_squares({12, 8});
-  ASSERT_TRUE(testbench::features_of(scene, {}).blended_coverage);
-  for (const Program program : {Program::segments, Program::full}) {
-    RenderOptions options = options_for(Traversal::brute_force, 1);
-    options.program.program = program;
-    const std::string expected = testbench::render_natively(scene, options).film.sha256();
-    for (const Traversal traversal : kTraversals) {
-      for (const int n : {0, 1, 3}) {
-        options = options_for(traversal, n);
-        options.program.program = program;
-        options.chip.chip.pes = n == 1 ? 16 : 96;
-        EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), expected)
-            << "program " << int(program) << ", traversal " << int(traversal) << ", n " << n;
-      }
-    }
-  }
-}
-
-TEST_F(CoverageRenders, AreTheSameOnTheChipWithoutHazards) {
-  const Scene scene = covered_squares({8, 6});
-  for (const Traversal traversal : kTraversals) {
-    for (const int n : {0, 2}) {
-      RenderOptions options = options_for(traversal, n);
-      const std::string expected = testbench::render_natively(scene, options).film.sha256();
-      options.check_hazards = true;
-      new_context();
-      EXPECT_EQ(testbench::render_on_chip(scene, options).film.sha256(), expected)
-          << "traversal " << int(traversal) << ", n " << n;
-    }
-  }
+/// Where a segment passes, no shadow ray is left out, for none is due.
+TEST(CoverageRenders, SegmentsThatPassAreNoCulledShadowRays) {
+  Scene scene = floor_under_lamp();
+  for (const double z : {1.0, 2.0, 3.0}) add_square(scene, z, 1.0, sheet(0.0));
+  RenderOptions options = test_support::render_options(Program::full, 16);
+  options.program.cull_shadow_rays = false;
+  EXPECT_EQ(testbench::render_natively(scene, options).counts.culled_shadow_rays, 0u);
 }
 
 /// Alpha that lets nothing through is no coverage, whatever the mode.
-TEST_F(CoverageRenders, SurfacesThatAreAllThereCostNothing) {
+TEST(CoverageRenders, SurfacesThatAreAllThereCostNothing) {
   Scene scene = floor_under_lamp();
   scene.materials[0].alpha_mode = AlphaMode::blend;
   EXPECT_TRUE(testbench::features_of(scene, {}).plain());

@@ -80,6 +80,7 @@ struct ShadeArguments : ScatterArguments {
   const SunRecord* suns = nullptr;
   int sun_count = 0;
   PolyPointer<TextureLookUp> look_ups;
+  LaneMask* passes = nullptr;  ///< of scenes with coverage: PEs whose segment goes straight on
 };
 
 /// Intersection stage, shadow rays: direct light if the ray hit its light; the ray's rest if it hit a surface

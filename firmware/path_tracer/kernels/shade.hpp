@@ -355,6 +355,7 @@ inline mask lets_segment_through(const ShadeArguments& arguments, const mask& hi
 /// how far the vertex is that chose it, goes on with them, so that hits of lights are weighed as if nothing
 /// had been between.
 inline void pass_on(const ShadeArguments& arguments, const mask& passes, const Rgb& arrived) {
+  cn::keep(passes, *arguments.passes);
   cn::poly_if_any(passes, [&] {
     const auto arrival = tail<ArrivalRecord>(arguments.hit);
     const poly<double> zero = 0.0;

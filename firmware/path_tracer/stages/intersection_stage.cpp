@@ -171,18 +171,19 @@ void IntersectionStage::process_segments(std::uint64_t step, int block) {
   arguments.shadow_ray = to.shadow_ray.ray;
   arguments.lighting = to.lighting;
   arguments.casts = &bin.casts;
+  LaneMask scattered = bin.hit_something.without(bin.shadow);
   if (context_.config.features.plain()) {
     context_.machine.run(context_.kernels.scatter, arguments, bin.segments());
   } else {
-    shade(from, arguments, bin.segments());
+    scattered = scattered.without(shade(from, arguments, bin.segments()));
   }
   if (context_.config.casts_shadow_rays())
-    context_.counts.culled_shadow_rays +=
-        std::uint64_t(bin.hit_something.without(bin.shadow).count() - bin.casts.count());
+    context_.counts.culled_shadow_rays += std::uint64_t(scattered.count() - bin.casts.count());
 }
 
-void IntersectionStage::shade(const Loads& from, const ScatterArguments& arguments,
-                              const LaneMask& segments) {
+LaneMask IntersectionStage::shade(const Loads& from, const ScatterArguments& arguments,
+                                  const LaneMask& segments) {
+  LaneMask passes;
   ShadeArguments shading;
   static_cast<ScatterArguments&>(shading) = arguments;
   shading.features = context_.config.features;
@@ -195,7 +196,9 @@ void IntersectionStage::shade(const Loads& from, const ScatterArguments& argumen
   if (shading.sun_count > 0)
     shading.suns = context_.machine.read_mono(context_.layout.suns, std::size_t(shading.sun_count));
   shading.look_ups = from.look_ups;
+  shading.passes = &passes;
   context_.machine.run(context_.kernels.shade, shading, segments);
+  return passes;
 }
 
 void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {

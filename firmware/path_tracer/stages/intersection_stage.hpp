@@ -72,7 +72,8 @@ class IntersectionStage : public Stage {
   void load_surfaces(std::uint64_t step, int block);
   void load_texels(std::uint64_t step, int block, TextureSlot slot);
   void load_environment(std::uint64_t step, int block);
-  void shade(const Loads& from, const ScatterArguments& arguments, const LaneMask& segments);
+  /// @return segments that passed what they hit
+  LaneMask shade(const Loads& from, const ScatterArguments& arguments, const LaneMask& segments);
 
   RayStore& ray_store_;
 };

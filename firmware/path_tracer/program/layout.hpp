@@ -13,12 +13,12 @@ namespace path_tracer {
 struct SceneCounts {
   int triangles = 0;
   int lights = 0;
-  int light_classes = 0;  ///< 0 if each light has a probability of its own
-  int tree_slots = 0;     ///< nodes; 0 without a tree
+  int tree_slots = 0;  ///< nodes; 0 without a tree
   bool has_layers = false;
   std::uint64_t texture_bytes = 0;
   std::uint64_t environment_texels = 0;
   int suns = 0;
+  int light_classes = 0;  ///< 0 if each light has a probability of its own
 };
 
 /// Addresses in mono memory.

@@ -72,6 +72,13 @@ Imf::Header exr_header(const Film& film, const std::map<std::string, std::string
   return header;
 }
 
+bool has_variance(const ExrFile& file) {
+  const ExrFile::ChannelNames names = file.channel_names();
+  return std::all_of(std::begin(kVarianceChannels), std::end(kVarianceChannels), [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+}
+
 /// Where OpenEXR finds the channels of one row: every row lies at the same place, so its byte stride is 0.
 Imf::FrameBuffer one_row(ExrPixel* first) {
   const auto slice = [](Imf::PixelType type, auto* element) {
@@ -171,7 +178,9 @@ ExrFilm read_exr_film(const std::filesystem::path& path) {
   film.width = file.size().x;
   film.height = file.size().y;
   film.rgb = file.channels({std::begin(kExrColour), std::end(kExrColour)});
-  film.variance = file.channels({std::begin(kVarianceChannels), std::end(kVarianceChannels)});
+  film.variance = has_variance(file)
+                      ? file.channels({std::begin(kVarianceChannels), std::end(kVarianceChannels)})
+                      : std::vector<float>(film.rgb.size(), 0.0F);
   film.attributes = file.texts();
   return film;
 }

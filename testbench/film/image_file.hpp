@@ -33,12 +33,12 @@ struct ExrFilm {
   int width = 0;
   int height = 0;
   std::vector<float> rgb;       ///< mean radiance
-  std::vector<float> variance;  ///< variance of the mean, in the order of `rgb`
+  std::vector<float> variance;  ///< variance of the mean, in the order of `rgb`; 0 in a file without it
   std::map<std::string, std::string> attributes;
 };
 
-/// Reads mean, variance and string attributes of a file of write_exr(). Throws InputError as read_exr_rgb()
-/// does.
+/// Reads mean, variance and string attributes of a file of write_exr(), or of another program's that has R, G
+/// and B. Throws InputError as read_exr_rgb() does.
 ExrFilm read_exr_film(const std::filesystem::path& path);
 
 }  // namespace testbench

@@ -30,9 +30,8 @@ void add_quad(Scene& scene, const glm::dvec3& corner, const glm::dvec3& edge1, c
   scene.triangles.push_back({{corner, corner + edge1 + edge2, corner + edge2}, material});
 }
 
-/// Adds floor, ceiling, back and sides that face inwards, and a light just below the ceiling. The side
-/// towards the camera is open.
-void add_room(Scene& scene) {
+/// Adds floor, ceiling, back and sides that face inwards. The side towards the camera is open.
+void add_walls(Scene& scene) {
   const glm::dvec3 x{kRoom, 0, 0};
   const glm::dvec3 y{0, kRoom, 0};
   const glm::dvec3 z{0, 0, kRoom};
@@ -41,18 +40,23 @@ void add_room(Scene& scene) {
   add_quad(scene, z, y, x, kWhite);
   add_quad(scene, x, z, y, kRed);
   add_quad(scene, {0, 0, 0}, y, z, kGreen);
+}
+
+/// Adds a light just below the ceiling.
+void add_ceiling_light(Scene& scene) {
   constexpr double kLightSize = 0.24 * kRoom;
   add_quad(scene, {0.5 * (kRoom - kLightSize), 0.998 * kRoom, 0.5 * (kRoom - kLightSize)}, {kLightSize, 0, 0},
            {0, 0, kLightSize}, kLight);
 }
 
+/// Without a light.
 Scene room() {
   Scene scene;
   scene.materials = materials();
   scene.film = {kDefaultFilmSide, kDefaultFilmSide};
   scene.camera.position = {0.5 * kRoom, 0.5 * kRoom, -800.0};
   scene.camera.vertical_field_of_view_radians = 2.0 * std::atan2(0.0125, 0.035);
-  add_room(scene);
+  add_walls(scene);
   return scene;
 }
 
@@ -195,10 +199,57 @@ Scene stadium(int triangles) {
   return scene;
 }
 
+/// Adds the materials of lights: six hues, each with four radiances, which differ by a factor of 4. Returns
+/// the first one's index.
+std::int32_t add_light_materials(Scene& scene) {
+  const auto first = static_cast<std::int32_t>(scene.materials.size());
+  constexpr double kLeastRadiance = 2.0;
+  for (const glm::dvec3& hue : {glm::dvec3(1, 0.3, 0.2), glm::dvec3(1, 0.7, 0.2), glm::dvec3(0.4, 1, 0.3),
+                                glm::dvec3(0.2, 0.8, 1), glm::dvec3(0.3, 0.4, 1), glm::dvec3(1, 0.9, 0.8)})
+    for (double radiance = kLeastRadiance; radiance < 200 * kLeastRadiance; radiance *= 4) {
+      const std::string name = "light" + std::to_string(scene.materials.size() - std::size_t(first));
+      scene.materials.push_back({name, glm::dvec3(0.0), hue * radiance});
+    }
+  return first;
+}
+
+/// Adds a square light of a random size that looks in a random direction.
+void add_small_light(Scene& scene, const glm::dvec3& centre, std::mt19937_64& random, std::int32_t material) {
+  const double height = 2 * uniform(random) - 1;
+  const double angle = glm::two_pi<double>() * uniform(random);
+  const double waist = std::sqrt(1 - height * height);
+  const glm::dvec3 normal(waist * std::cos(angle), height, waist * std::sin(angle));
+  const glm::dvec3 other = std::abs(height) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+  const double side = (0.01 + 0.02 * uniform(random)) * kRoom;
+  const glm::dvec3 edge1 = side * glm::normalize(glm::cross(normal, other));
+  const glm::dvec3 edge2 = glm::cross(normal, edge1);
+  add_quad(scene, centre - 0.5 * (edge1 + edge2), edge1, edge2, material);
+}
+
+/// Adds a ball, a wall across the back of the room, and lights all over the room: most in front of the wall,
+/// every eighth behind it, where the camera sees none of their light.
+void add_many_lights(Scene& scene, int triangles) {
+  constexpr double kWall = 0.8;  // its distance from the open side, of the room's edge
+  add_quad(scene, {0, 0, kWall * kRoom}, {0, kRoom, 0}, {kRoom, 0, 0}, kWhite);
+  add_ball(scene, {kRoom / 2, 0.2 * kRoom, kRoom / 2}, 3, [](const glm::dvec3&) { return 0.2 * kRoom; });
+  const std::int32_t first = add_light_materials(scene);
+  const auto kinds = static_cast<std::int32_t>(scene.materials.size()) - first;
+  std::mt19937_64 random(2);
+  const int lights = (triangles - static_cast<int>(scene.triangles.size())) / 2;
+  for (int i = 0; i < lights; ++i) {
+    const bool is_hidden = i % 8 == 0;
+    const double depth = is_hidden ? kWall + (1 - kWall) * (0.2 + 0.6 * uniform(random))
+                                   : kWall * (0.05 + 0.9 * uniform(random));
+    const double x = 0.05 + 0.9 * uniform(random);
+    const double y = 0.5 + 0.45 * uniform(random);
+    add_small_light(scene, kRoom * glm::dvec3(x, y, depth), random, first + i % kinds);
+  }
+}
+
 }  // namespace
 
 std::string name_of(GeneratedScene scene) {
-  constexpr const char* kNames[] = {"blob", "sphere_flake", "stadium", "needles"};
+  constexpr const char* kNames[] = {"blob", "sphere_flake", "stadium", "needles", "many_lights"};
   return kNames[std::size_t(scene)];
 }
 
@@ -208,10 +259,12 @@ Scene generate_scene(GeneratedScene kind, int triangles) {
                      " triangles; allowed: " + std::to_string(kLeastGeneratedTriangles) + " to " +
                      std::to_string(kMostGeneratedTriangles));
   Scene scene = kind == GeneratedScene::stadium ? stadium(triangles) : room();
+  if (kind != GeneratedScene::stadium && kind != GeneratedScene::many_lights) add_ceiling_light(scene);
   const int rest = triangles - static_cast<int>(scene.triangles.size());
   if (kind == GeneratedScene::blob) add_blob(scene, kCentre, 0.35 * kRoom, rest);
   if (kind == GeneratedScene::sphere_flake) add_sphere_flake(scene, rest);
   if (kind == GeneratedScene::needles) add_needles(scene, rest);
+  if (kind == GeneratedScene::many_lights) add_many_lights(scene, triangles);
   scene.name = name_of(kind);
   return scene;
 }

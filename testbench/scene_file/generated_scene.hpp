@@ -14,10 +14,12 @@ enum class GeneratedScene : std::uint8_t {
                  ///< Environments", IEEE CG&A 7(11), 1987)
   stadium,       ///< the blob in a stadium 10^5 times larger than it
   needles,       ///< triangles a thousand times longer than wide, all through a Cornell box
+  many_lights,   ///< a ball among small square lights of 24 colours and powers, some behind a wall
 };
 
 inline constexpr GeneratedScene kGeneratedScenes[] = {GeneratedScene::blob, GeneratedScene::sphere_flake,
-                                                      GeneratedScene::stadium, GeneratedScene::needles};
+                                                      GeneratedScene::stadium, GeneratedScene::needles,
+                                                      GeneratedScene::many_lights};
 std::string name_of(GeneratedScene scene);
 
 inline constexpr int kLeastGeneratedTriangles = 100;

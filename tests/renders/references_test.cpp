@@ -43,7 +43,7 @@ TEST(References, AreOfTheScenesAsTheyAre) {
     const ExrFilm reference = testbench::read_exr_film(folder / "reference.exr");
     Scene scene = testbench::load_scene(folder);
     scene.film = {reference.width, reference.height};
-    const Film film = rendered(scene, 64);
+    const Film film = rendered(scene, 128);
     for (int channel = 0; channel < 3; ++channel) {
       double difference = 0;
       double variance = 0;

@@ -1,4 +1,4 @@
-#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/bench/bench_command.hpp"
 
 #include "testbench/commands/commands.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "firmware/path_tracer/program/program_options.hpp"
-#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/bench/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"

@@ -2,7 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/bench/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/firmware_options.hpp"
 #include "testbench/commands/output_files.hpp"

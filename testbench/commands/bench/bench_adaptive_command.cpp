@@ -5,7 +5,7 @@
 #include <memory>
 #include <sstream>
 
-#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/bench/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/firmware_options.hpp"
 #include "testbench/commands/named_values.hpp"

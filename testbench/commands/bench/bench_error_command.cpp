@@ -5,7 +5,7 @@
 
 #include "testbench/benchmark/error_run.hpp"
 #include "testbench/benchmark/error_tables.hpp"
-#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/bench/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/firmware_options.hpp"
 #include "testbench/commands/named_values.hpp"

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "testbench/commands/bench_command.hpp"
+#include "testbench/commands/bench/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/film/error_curve.hpp"
 #include "testbench/film/light_pixels.hpp"

@@ -1,5 +1,5 @@
-#include "testbench/statistics/counters.hpp"
 #include "testbench/run/energy.hpp"
+#include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/roofline.hpp"
 
 namespace testbench {

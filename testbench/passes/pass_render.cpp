@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "testbench/passes/pass_message.hpp"
 #include "testbench/sampling/time_budget.hpp"
@@ -14,10 +13,6 @@ namespace testbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double sum(const MeanSamples& samples) {
-  return std::accumulate(samples.begin(), samples.end(), 0.0);
-}
 
 /// Whether every pixel has the same whole number of samples.
 bool is_uniform(const MeanSamples& samples) {
@@ -99,7 +94,7 @@ class PassLeader {
 
   PassRender run(SamplePlan& plan) {
     while (const std::optional<MeanSamples> wanted = plan.next(done_, render_.film)) {
-      const double paths = sum(*wanted) - sum(done_);
+      const double paths = total(*wanted) - total(done_);
       const double share = limit_.share(paths);
       if (share == 0) {
         render_.end = PassEnd::time_over;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "testbench/sampling/error_estimate.hpp"
 
@@ -11,10 +10,6 @@ namespace {
 
 constexpr double kMostGrowth = 2.0;    ///< of the number of paths in a pass
 constexpr double kLeastGrowth = 1.05;  ///< so that the last passes are not many small ones
-
-double sum(const MeanSamples& samples) {
-  return std::accumulate(samples.begin(), samples.end(), 0.0);
-}
 
 /// Samples in proportion to the deviations, within what is done and what is allowed.
 class Allocation {
@@ -73,15 +68,15 @@ std::optional<MeanSamples> AdaptivePlan::next(const MeanSamples& done, const Fil
   error_ = picture_error(deviations, importance_, done);
   if (*error_ <= target_) return std::nullopt;
   const Allocation allocation(deviations, importance_, samples_, done);
-  const double paths = sum(done);
+  const double paths = total(done);
   const double reaches = smallest_scale(
       allocation, [&](const MeanSamples& means) { return allocation.error(means) <= target_; });
   const double least = smallest_scale(
-      allocation, [&](const MeanSamples& means) { return sum(means) >= kLeastGrowth * paths; });
-  const double most =
-      smallest_scale(allocation, [&](const MeanSamples& means) { return sum(means) >= kMostGrowth * paths; });
+      allocation, [&](const MeanSamples& means) { return total(means) >= kLeastGrowth * paths; });
+  const double most = smallest_scale(
+      allocation, [&](const MeanSamples& means) { return total(means) >= kMostGrowth * paths; });
   MeanSamples means = allocation.at(std::clamp(reaches, least, most));
-  if (sum(means) - paths < 1) return std::nullopt;  // every pixel has all that it may get
+  if (total(means) - paths < 1) return std::nullopt;  // every pixel has all that it may get
   return means;
 }
 

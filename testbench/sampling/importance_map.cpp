@@ -9,7 +9,7 @@
 namespace testbench {
 namespace {
 
-constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};  // Rec. ITU-R BT.709-6, section 3.2
+constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};  // of the primaries of Rec. ITU-R BT.709-6
 
 std::string place_of(std::size_t pixel, FilmSize film) {
   const auto width = std::size_t(film.width);

@@ -20,6 +20,10 @@ std::uint64_t total(const SampleCounts& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
+double total(const MeanSamples& means) {
+  return std::accumulate(means.begin(), means.end(), 0.0);
+}
+
 namespace {
 
 /// Pixels with samples to come, in the order in which they are listed.

@@ -22,6 +22,7 @@ inline constexpr double kMostPixelSamples = 1 << 30;
 SampleCounts counts_of(const MeanSamples& means, std::uint64_t seed);
 
 std::uint64_t total(const SampleCounts& counts);
+double total(const MeanSamples& means);
 
 /// The samples that `until` has and `done` has not: the next one of each pixel, then the one after it, and so
 /// on; pixels in the order 0, stride, 2 * stride, ... modulo their number, with which `stride` has no divisor

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/support/command_line.hpp"
 
@@ -123,6 +125,31 @@ TEST_F(SamplingCommand, RefusesWrongOptionsInOneLine) {
   write("file", "");
   expect_wrong({"--snapshots", "file"}, {"--snapshots: found 'file'", "allowed"});
   expect_wrong({"--snapshots", ""}, {"--snapshots", "allowed"});
+}
+
+/// The cell of a column in the last row of a table.
+double last(const std::string& csv, const std::string& column) {
+  std::vector<Words> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  const auto found = std::find(rows.front().begin(), rows.front().end(), column);
+  return std::stod(rows.back().at(std::size_t(found - rows.front().begin())));
+}
+
+TEST_F(SamplingCommand, AdaptiveSamplingSavesPathsWhereASmallPartIsHard) {
+  const std::string scene = CSX600_SCENES_DIR "/niche";
+  ASSERT_EQ(
+      run({"bench", "reference", scene, "--size", "24x24", "--samples", "2048", "-o", "r.exr"}).exit_code, 0);
+  const Words words = {"bench", "adaptive", scene,       "--reference", "r.exr", "--targets",
+                       "0.2",   "--native", "--samples", "512",         "--csv", "a.csv"};
+  ASSERT_EQ(run(words).exit_code, 0);
+  EXPECT_EQ(last(read("a.csv"), "target_error"), 0.2);
+  EXPECT_GT(last(read("a.csv"), "paths_gain_by_relative_rmse"), 1.5);
+  EXPECT_LT(last(read("a.csv"), "relative_rmse"), 0.2);
 }
 
 }  // namespace sampling_command_test

@@ -36,7 +36,11 @@ int common_beginning(const std::string& a, const std::string& b) {
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(word, names);
   if (!nearest.empty()) return "did you mean '" + nearest + "'?";
-  return "allowed is one of " + CLI::detail::join(names, ", ");
+  constexpr std::size_t kMostListed = 24;
+  if (names.size() <= kMostListed) return "allowed is one of " + CLI::detail::join(names, ", ");
+  const std::vector<std::string> first(names.begin(), names.begin() + kMostListed);
+  return "allowed is one of " + CLI::detail::join(first, ", ") + " and " +
+         std::to_string(names.size() - kMostListed) + " more";
 }
 
 std::vector<std::string> names_of_commands(const CLI::App& app) {

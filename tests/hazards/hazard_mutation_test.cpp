@@ -105,13 +105,14 @@ TEST(SoundFirmware, RunsCleanWithTexturesAtEveryLevelOfBuffering) {
 
 /// Every single wait of a run, one after the other.
 void expect_every_wait_is_needed(const testbench::Scene& scene, const ProgramConfig& config) {
-  const CheckedRun sound = run_checked(scene, config, 8, 1);
+  const test_support::CheckedProgram program(scene, config, 8);
+  const CheckedRun sound = program.run(1);
   ASSERT_EQ(sound.fault, "");
   ASSERT_GT(sound.waits.size(), 50u);
   for (const int wait : sound.waits) {
     Mutation mutation;
     mutation.dropped_wait = wait;
-    const CheckedRun broken = run_checked(scene, config, 8, 1, mutation);
+    const CheckedRun broken = program.run(1, mutation);
     expect_one_line(broken.fault);
     expect_parts(broken.fault, {"hazard", "kernel '", "request ", " bytes, ", "semaphore '"});
     ASSERT_FALSE(testing::Test::HasFailure())

@@ -13,12 +13,18 @@ namespace test_support {
 
 using path_tracer::HostSemaphores;
 
-CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::ProgramConfig& config, int num_pes,
-                       int samples, const Mutation& mutation) {
-  testbench::MonoImage image = testbench::make_mono_image(scene, num_pes, config);
+CheckedProgram::CheckedProgram(const testbench::Scene& scene, const path_tracer::ProgramConfig& config,
+                               int num_pes)
+    : scene_(scene),
+      config_(config),
+      num_pes_(num_pes),
+      image_(testbench::make_mono_image(scene, num_pes, config)) {}
+
+CheckedRun CheckedProgram::run(int samples, const Mutation& mutation) const {
+  testbench::MonoImage image = image_;
   mutation.layout(image.layout);
   constexpr int kPolyBytes = 32768;  // eight buffers of one stage need more than the CSX600's 6 KiB
-  BrokenMachine machine(num_pes, kPolyBytes, image.layout.total_bytes, mutation.dropped_wait);
+  BrokenMachine machine(num_pes_, kPolyBytes, image.layout.total_bytes, mutation.dropped_wait);
   machine.set_last_host_semaphore(HostSemaphores::kResultsFree);
   std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
 
@@ -27,7 +33,7 @@ CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::Program
     checker.name_mono(region.name, {region.first, region.bytes});
   machine.set_access_observer(&checker);
 
-  testbench::Film film(scene.film, testbench::film_scale(scene));
+  testbench::Film film(scene_.film, testbench::film_scale(scene_));
   testbench::ResultReader results(image.layout, film);
   machine.on_signal(HostSemaphores::kResultsReady, [&] {
     results.fetch([&](cn::MonoAddress from, void* to, std::size_t bytes) {
@@ -38,7 +44,7 @@ CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::Program
   });
   CheckedRun run;
   run.fault = fault_of([&] {
-    path_tracer::PathTracer tracer(machine, path_tracer::observed_kernels(), config, image.layout,
+    path_tracer::PathTracer tracer(machine, path_tracer::observed_kernels(), config_, image.layout,
                                    {0, samples});
     tracer.run({});
     checker.firmware_ends();
@@ -46,6 +52,11 @@ CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::Program
   run.waits = machine.needed_waits();
   run.requests = checker.requests();
   return run;
+}
+
+CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::ProgramConfig& config, int num_pes,
+                       int samples, const Mutation& mutation) {
+  return CheckedProgram(scene, config, num_pes).run(samples, mutation);
 }
 
 testbench::Scene small_scene() {

@@ -7,6 +7,7 @@
 #include "firmware/path_tracer/path_tracer.hpp"
 #include "model/hazards/hazard_checker.hpp"
 #include "testbench/machine/native_machine.hpp"
+#include "testbench/mono_image/mono_image.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace test_support {
@@ -24,7 +25,20 @@ struct CheckedRun {
   std::uint64_t requests = 0;  ///< number of requests that moved data
 };
 
-/// Runs the whole path tracer natively under the hazard checker.
+/// The whole path tracer for a scene, which runs natively under the hazard checker, as often as wanted.
+class CheckedProgram {
+ public:
+  CheckedProgram(const testbench::Scene& scene, const path_tracer::ProgramConfig& config, int num_pes);
+
+  CheckedRun run(int samples, const Mutation& mutation = {}) const;
+
+ private:
+  const testbench::Scene& scene_;
+  path_tracer::ProgramConfig config_;
+  int num_pes_;
+  testbench::MonoImage image_;
+};
+
 CheckedRun run_checked(const testbench::Scene& scene, const path_tracer::ProgramConfig& config, int num_pes,
                        int samples = 2, const Mutation& mutation = {});
 

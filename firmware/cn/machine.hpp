@@ -36,6 +36,9 @@ class Machine {
   Machine& operator=(const Machine&) = delete;
 
   int num_pes() const { return poly_memory_.num_pes(); }
+  /// Whether anything depends on which instructions kernels issue. If not, the simulator may leave out what
+  /// only charges.
+  virtual bool counts_instructions() const { return true; }
   PolyMemory& poly_memory() { return poly_memory_; }
   const PolyMemory& poly_memory() const { return poly_memory_; }
 

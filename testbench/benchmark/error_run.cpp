@@ -78,7 +78,9 @@ std::vector<CurvePoint> measure_error(const Scene& scene, const ExrFilm& referen
                                       const RenderOptions& options, const CurveSamples& samples,
                                       const std::function<void(double share)>& progress) {
   const std::vector<bool> counts = pixels_that_count(scene);
-  GrowingRender native(scene, options, MachineKind::native);
+  RenderOptions native_options = options;
+  search_natively(native_options);
+  GrowingRender native(scene, native_options, MachineKind::native);
   GrowingRender timed(scene, options, MachineKind::chip);
   std::vector<CurvePoint> points;
   for (const path_tracer::Work& work : doubling_parts(samples.native)) {

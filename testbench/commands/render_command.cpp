@@ -43,6 +43,7 @@ struct RenderCommand {
   LevelOption level;
   FirmwareOptions firmware;
   bool native = false;
+  bool firmware_search = false;  ///< natively, too
   OutputFiles outputs;
   bool statistics_text_wanted = false;
   ObservationOption observation;
@@ -84,6 +85,10 @@ RenderRequest RenderCommand::make_request() const {
 
 std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& of) const {
   of.program = built_for(loaded, of.program);
+  if (native && !firmware_search && firmware.given().count("traversal") == 0 && !of.check_hazards) {
+    search_natively(of);
+    return "native: through the simulator's own tree";
+  }
   return choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of.program);
 }
 
@@ -275,6 +280,8 @@ void add_render_command(CLI::App& app) {
   state->timing.add_to(command);
   state->level.add_to(command);
   command.add_flag("--native", state->native, "Run the firmware without SystemC: same image, no time");
+  command.add_flag("--firmware-search", state->firmware_search,
+                   "With --native, find hits as the firmware does, not through the simulator's own tree");
   add_check_hazards_flag(command, state->options.check_hazards);
   state->outputs.add_to(command, "--exr", "Write the image as OpenEXR");
   state->outputs.add_to(command, "--png", "Write the image as PNG");

@@ -27,6 +27,10 @@ class NativeMachine : public cn::Machine {
   /// directly.
   void run_firmware(const std::function<void(cn::Machine&)>& firmware);
 
+  /// Kernels may leave out what only charges instructions, from now on. The results are the same.
+  void stop_counting() { counts_instructions_ = false; }
+  bool counts_instructions() const override { return counts_instructions_; }
+
   void start_thread(int priority, const std::string& name, std::function<void()> body) override;
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;
@@ -45,6 +49,7 @@ class NativeMachine : public cn::Machine {
   }
   void check_range(cn::MonoAddress first, std::uint64_t bytes, const char* what) const;
 
+  bool counts_instructions_ = true;
   std::vector<std::uint8_t> mono_;
   std::array<int, kSemaphores> semaphores_{};
   std::array<std::function<void()>, kSemaphores> services_;

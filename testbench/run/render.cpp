@@ -190,6 +190,11 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
   });
 }
 
+void search_natively(RenderOptions& options) {
+  options.searches_natively = true;
+  options.program.traversal = path_tracer::Traversal::brute_force;
+}
+
 RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress,
                              TimingStream* record) {
   return with_input_errors([&] {
@@ -198,6 +203,7 @@ RenderResult render_natively(const Scene& scene, const RenderOptions& options, c
     const std::unique_ptr<NativeMachine> owned = native_machine(options.chip, layout.total_bytes, record);
     NativeMachine& machine = *owned;
     copy_to(machine, run.image());
+    if (options.searches_natively && record == nullptr && !options.check_hazards) machine.stop_counting();
     ResultReader results(layout, run.result().film);
     model::HazardChecker* const checker = run.check_hazards(machine, {});
     machine.on_signal(path_tracer::HostSemaphores::kResultsReady, [&] {

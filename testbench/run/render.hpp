@@ -34,6 +34,8 @@ struct RenderOptions {
   cn::Level level = cn::widest_level();
   FilmSums film_sums = FilmSums::means_and_variances;
   ObservationOptions observation;  ///< on the chip only
+  /// Native runs find hits through the simulator's tree (search_natively()).
+  bool searches_natively = false;
   bool check_hazards = false;  ///< with kernels that report their accesses (model/hazards/hazard_checker.hpp)
 };
 
@@ -67,6 +69,10 @@ std::shared_ptr<const MonoImage> make_image(const Scene& scene, const RenderOpti
 /// Throws InputError when a list of so many camera samples needs more mono memory than the chip has; before
 /// the list is made.
 void require_list_memory(std::uint64_t samples, const model::ChipConfig& chip);
+
+/// Lets native runs find hits the fastest way that the simulator has, instead of the program's: the image is
+/// the same, since every way finds the same hits, and nothing of the chip's ways is counted.
+void search_natively(RenderOptions& options);
 
 /// Throws InputError when scene and bins need more mono memory than the chip has.
 void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip);

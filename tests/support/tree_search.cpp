@@ -140,7 +140,8 @@ SearchHit RaySearch::hit_of(int pe, const Offsets& at) const {
 }
 
 std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const std::vector<RayRecord>& rays,
-                                              const path_tracer::Prefilter* prefilter) {
+                                              const path_tracer::Prefilter* prefilter,
+                                              const path_tracer::SearchTree* tree) {
   const Offsets at(scene);
   scramble(at.end);
   const int count = static_cast<int>(rays.size());
@@ -152,6 +153,7 @@ std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const st
   arguments.triangle_count = scene.triangle_count;
   arguments.layers = scene.layers;
   arguments.prefilter = prefilter;
+  arguments.tree = tree;
   arguments.reach = scene.reach;
   arguments.surfaces = {kSurfaces, sizeof(path_tracer::SurfaceRecord)};
   arguments.hit = PolyPointer<HitRecord>(at.hit);

@@ -49,7 +49,8 @@ class RaySearch {
   /// @param prefilter prefilter of the scene's triangles; nullptr for none
   std::vector<SearchHit> brute_force(const SearchScene& scene,
                                      const std::vector<path_tracer::RayRecord>& rays,
-                                     const path_tracer::Prefilter* prefilter = nullptr);
+                                     const path_tracer::Prefilter* prefilter = nullptr,
+                                     const path_tracer::SearchTree* tree = nullptr);
 
   /// Half of the rays enter the tree after the others have begun. With `move`, every ray continues in another
   /// PE after each turn, as rays from a bin do.

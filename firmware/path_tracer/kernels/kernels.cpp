@@ -9,6 +9,7 @@
 #include "firmware/path_tracer/kernels/shade.hpp"
 #include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/prefilter/prefilter_search.hpp"
+#include "firmware/path_tracer/prefilter/tree_walk.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
 
@@ -28,9 +29,13 @@ void intersect(const IntersectArguments& arguments) {
                   arguments.ray.get(&RayRecord::left_face)};
   ray.measure_from_anchor(arguments.layers);
   Nearest nearest;
-  search_by(PrefilteredSearch{arguments.prefilter}, ray, arguments.reach,
-            MonoTriangles{arguments.triangles, arguments.triangle_count, arguments.layers.record_bytes()},
-            nearest);
+  const MonoTriangles triangles{arguments.triangles, arguments.triangle_count,
+                                arguments.layers.record_bytes()};
+  if (arguments.tree != nullptr) {
+    search_tree(ray, arguments.reach, triangles, *arguments.tree, nearest);
+  } else {
+    search_by(PrefilteredSearch{arguments.prefilter}, ray, arguments.reach, triangles, nearest);
+  }
   write_hit(nearest, ray.origin, ray.direction, arguments.hit, arguments.hit_has_tail);
   arguments.surface_place.write(place_of(arguments.surfaces, nearest.number));
   cn::keep(nearest.number >= 0, *arguments.hit_something);

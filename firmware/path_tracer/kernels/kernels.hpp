@@ -4,6 +4,7 @@
 #include "firmware/cn/simd/level.hpp"
 #include "firmware/path_tracer/kernels/traversal_kernels.hpp"
 #include "firmware/path_tracer/prefilter/prefilter.hpp"
+#include "firmware/path_tracer/prefilter/search_tree.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
 #include "firmware/path_tracer/records/tails.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
@@ -19,6 +20,7 @@ struct IntersectArguments {
   const TriangleRecord* triangles = nullptr;
   int triangle_count = 0;
   const Prefilter* prefilter = nullptr;  ///< the simulator's, of those triangles; nullptr to test each
+  const SearchTree* tree = nullptr;      ///< the simulator's, where nothing is charged
   double reach = 0;                      ///< of the scene (triangle_record.hpp)
   Layers layers;
   MonoRecords surfaces;

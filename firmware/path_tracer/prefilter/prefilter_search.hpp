@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 #include "firmware/cn/language/shortcut.hpp"
 #include "firmware/path_tracer/prefilter/prefilter_ray.hpp"
@@ -66,6 +67,9 @@ class LaneTriangles {
   /// @param first index of the candidates' first triangle
   LaneTriangles(const MonoTriangles& triangles, int first, Candidates& candidates) {
     for (int lane = 0; lane < cn::kStripLanes; ++lane) at_[lane] = &triangles(first + candidates.take(lane));
+  }
+  explicit LaneTriangles(const TriangleRecord* const (&at)[cn::kStripLanes]) {
+    std::copy(std::begin(at), std::end(at), at_);
   }
   /// Loads all members but the face.
   PolyTriangle load(bool is_in_layers) const {

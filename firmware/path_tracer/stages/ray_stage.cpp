@@ -16,9 +16,7 @@ void RayStage::process(std::uint64_t step, int block) {
   const Layout& layout = context_.layout;
   arguments.triangle_count = layout.triangle_count;
   arguments.triangles = read_triangles(context_.machine, layout, 0, arguments.triangle_count);
-  if (prefilter_.triangles.empty())
-    prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, layout.reach, layout.layers);
-  arguments.prefilter = &prefilter_;
+  choose_search(arguments);
   arguments.reach = layout.reach;
   arguments.layers = layout.layers;
   arguments.surfaces = {layout.surfaces.address, layout.sizes.surface};
@@ -27,6 +25,22 @@ void RayStage::process(std::uint64_t step, int block) {
   arguments.surface_place = bin.surface_place;
   arguments.hit_something = &bin.hit_something;
   context_.machine.run(context_.kernels.intersect, arguments, bin.live);
+}
+
+/// Where nothing is charged, the simulator finds hits the fastest way that it has: 312 triangles take 0.7 of
+/// the time without a tree, 1068 take 1.7 times as long (`csx600 render --native`).
+void RayStage::choose_search(IntersectArguments& arguments) {
+  const Layout& layout = context_.layout;
+  constexpr int kFewTriangles = 512;
+  if (!context_.machine.counts_instructions() && layout.triangle_count > kFewTriangles) {
+    if (tree_.empty())
+      tree_ = make_search_tree(arguments.triangles, arguments.triangle_count, layout.reach, layout.layers);
+    arguments.tree = &tree_;
+    return;
+  }
+  if (prefilter_.triangles.empty())
+    prefilter_ = make_prefilter(arguments.triangles, arguments.triangle_count, layout.reach, layout.layers);
+  arguments.prefilter = &prefilter_;
 }
 
 void RayStage::save(std::uint64_t step, int block) {

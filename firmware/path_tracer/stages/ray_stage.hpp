@@ -18,7 +18,11 @@ class RayStage : public Stage {
   void save(std::uint64_t step, int block) override;
 
  private:
-  Prefilter prefilter_;  ///< made when the triangles are first read
+  void choose_search(IntersectArguments& arguments);
+
+  // The simulator's, made when the triangles are first read:
+  Prefilter prefilter_;
+  SearchTree tree_;
 };
 
 }  // namespace path_tracer

@@ -84,6 +84,7 @@ void BenchReferenceCommand::run() {
   outputs.require_writable();
   size.require_valid();
   options.chip = chip.chip();
+  search_natively(options);
   options.level = level.level();
   const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded));

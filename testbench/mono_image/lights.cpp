@@ -4,6 +4,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "testbench/mono_image/environment_cells.hpp"
+#include "testbench/mono_image/light_candidates.hpp"
 #include "testbench/mono_image/light_choice.hpp"
 #include "testbench/mono_image/light_pilot.hpp"
 #include "testbench/mono_image/to_record.hpp"
@@ -82,6 +83,7 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
   if (emitters.empty()) return lights;
   const LightChoice choice = choose_by(light_weights(scene, emitters));
   add_records(emitters, choice, lights);
+  lights.candidates = light_candidates(emitters, choice, radius);
   if (!cells.emitters.empty())
     lights.environment_texels =
         environment_texels(scene.environment, cells, pdf_of_cells(cells, choice, first_cell));

@@ -13,9 +13,10 @@ namespace testbench {
 /// What shadow rays are aimed at.
 struct Lights {
   std::vector<path_tracer::LightRecord> records;
-  std::vector<double> cdf;                          ///< of the lights, or of their classes
-  std::vector<path_tracer::LightClass> classes;     ///< if there are more than kMostSingleLights
-  std::vector<std::vector<std::size_t>> triangles;  ///< of each light; none of a light without area
+  std::vector<path_tracer::LightCandidate> candidates;  ///< one for each
+  std::vector<double> cdf;                              ///< of the lights, or of their classes
+  std::vector<path_tracer::LightClass> classes;         ///< if there are more than kMostSingleLights
+  std::vector<std::vector<std::size_t>> triangles;      ///< of each light; none of a light without area
   std::vector<path_tracer::EnvironmentTexel> environment_texels;
   std::vector<path_tracer::SunRecord> suns;
 };

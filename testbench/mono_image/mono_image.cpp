@@ -308,6 +308,8 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   put_textures(image, textures, triangles.count());
   put_shading_kinds(image, scene, config.shading);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
+  if (config.resamples_lights())
+    put(image, image.layout.light_candidates, lights.candidates.data(), lights.candidates.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
   put_outside(image, scene.environment, lights);
   put(image, image.layout.light_classes, lights.classes.data(), lights.classes.size());

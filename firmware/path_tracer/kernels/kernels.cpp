@@ -4,6 +4,7 @@
 
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/kernels/coverage.hpp"
+#include "firmware/path_tracer/kernels/light_candidates.hpp"
 #include "firmware/path_tracer/kernels/outside.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/shade.hpp"
@@ -59,8 +60,10 @@ void aim(const ScatterArguments& arguments, const Surface& surface, const mask& 
       sample_light(arguments.light_sampling, light_surface, light.get(&LightRecord::shape), surface.position,
                    surface.normal, u, v);
   const mask facing = sample.weight > 0.0;
-  const poly<double> scale = cn::select(facing, sample.weight, poly<double>(0.0)) *
-                             light.get(&LightRecord::inverse_pdf) * (1.0 / kPi);
+  poly<double> scale = cn::select(facing, sample.weight, poly<double>(0.0)) *
+                       light.get(&LightRecord::inverse_pdf) * (1.0 / kPi);
+  if (arguments.resamples_lights)
+    scale.assign_all_lanes(scale * arguments.resampling.get(&LightResampling::factor));
   arguments.shadow_ray.set(&RayRecord::origin, surface.position);
   arguments.shadow_ray.set(&RayRecord::direction, sample.to_light);
   arguments.shadow_ray.set(&RayRecord::left_face, arguments.surface.get(&SurfaceRecord::face));
@@ -378,6 +381,8 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<ScatterArguments, scatter>("scatter"),
       cn::kernel<LookUpArguments, look_up>("look_up"),
       cn::kernel<EnvironmentLookUpArguments, look_up_environment>("look_up_environment"),
+      cn::kernel<LightCandidatesArguments, find_light_candidates>("find_light_candidates"),
+      cn::kernel<LightCandidatesArguments, resample_light>("resample_light"),
       cn::kernel<ShadeArguments, shade>("shade"),
       cn::kernel<IlluminateArguments, illuminate>("illuminate"),
       cn::kernel<AppendArguments, append>("append"),

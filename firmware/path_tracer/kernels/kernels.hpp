@@ -30,6 +30,23 @@ struct IntersectArguments {
   LaneMask* hit_something = nullptr;
 };
 
+/// Intersection stage, after the first loads, where a light is one of several candidates
+/// (light_candidates.hpp).
+struct LightCandidatesArguments {
+  PolyPointer<HitRecord> hit;
+  PolyPointer<SurfaceRecord> surface;
+  PolyPointer<PathRecord> path;
+  LightTable light_table;
+  MonoAddress lights = 0;      ///< LightRecords
+  MonoAddress candidates = 0;  ///< a LightCandidate for each
+  Sampler sampler = Sampler::philox;
+  std::uint64_t seed = 0;
+  int count = 1;                          ///< of candidates
+  PolyPointer<CandidateLookUp> look_ups;  ///< count of them
+  PolyPointer<LightResampling> resampling;
+  PolyField<MonoAddress> light_place;  ///< of the light that was taken
+};
+
 /// Intersection stage, segments: shading details, the new direction, and a shadow ray to the light that was
 /// chosen before.
 struct ScatterArguments {
@@ -37,6 +54,8 @@ struct ScatterArguments {
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<PathRecord> path;
   PolyPointer<LightRecord> light;
+  bool resamples_lights = false;  ///< the light was one of several candidates
+  PolyPointer<LightResampling> resampling;
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   std::uint64_t seed = 0;
@@ -235,6 +254,8 @@ struct Kernels {
   cn::Kernel<ScatterArguments> scatter;
   cn::Kernel<LookUpArguments> look_up;
   cn::Kernel<EnvironmentLookUpArguments> look_up_environment;
+  cn::Kernel<LightCandidatesArguments> find_light_candidates;
+  cn::Kernel<LightCandidatesArguments> resample_light;
   cn::Kernel<ShadeArguments> shade;
   cn::Kernel<IlluminateArguments> illuminate;
   cn::Kernel<AppendArguments> append;

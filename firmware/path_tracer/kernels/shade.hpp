@@ -200,6 +200,7 @@ inline void aim(const ShadeArguments& arguments, const ShadedVertex& vertex, con
     const poly<double> weight = power_heuristic(cn::select(facing, here, poly<double>(1.0)), value.pdf);
     scale = scale * cn::select(vertex.shares_light, weight, poly<double>(1.0));
   }
+  if (arguments.resamples_lights) scale = scale * arguments.resampling.get(&LightResampling::factor);
   Rgb contribution = dimmed(arguments, value.value * scale, vertex.arrived);
   if (lights.without_triangles()) contribution = contribution * chosen.colour;
   arguments.shadow_ray.set(&RayRecord::origin, vertex.position);

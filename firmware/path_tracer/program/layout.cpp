@@ -86,6 +86,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.light_cdf = memory.take<double>("light cdf", std::uint64_t(cdf_entries));
   if (scene.light_classes > 0)
     layout.light_classes = memory.take<LightClass>("light classes", std::uint64_t(scene.light_classes));
+  if (config.resamples_lights())
+    layout.light_candidates = memory.take<LightCandidate>("light candidates", std::uint64_t(scene.lights));
   if (config.uses_tree())
     layout.nodes = memory.take<std::uint64_t>(
         "nodes", std::uint64_t(scene.tree_slots) * std::uint64_t(tree.layout.node_bytes()) / 8);

@@ -30,6 +30,7 @@ struct Layout {
   cn::MonoPointer<LightRecord> lights;
   cn::MonoPointer<double> light_cdf;  ///< entry i: probability of lights 0..i, or of classes 0..i
   cn::MonoPointer<LightClass> light_classes;
+  cn::MonoPointer<LightCandidate> light_candidates;  ///< one for each light, where vertices resample lights
   cn::MonoPointer<std::uint64_t> nodes;
   cn::MonoPointer<std::uint64_t> textures;             ///< footprints of texels (records/tails.hpp)
   cn::MonoPointer<CameraSampleRecord> camera_samples;  ///< behind everything else, of a run with a list

@@ -58,6 +58,7 @@ enum class Traversal : std::uint8_t {
 };
 
 inline constexpr int kMaxBuffers = 8;
+inline constexpr int kMaxLightCandidates = 8;
 
 /// Limits far beyond what fits the chip; they keep slot numbers within 32 bits.
 inline constexpr int kMaxBinBlocks = 65536;
@@ -84,6 +85,7 @@ struct ProgramConfig {
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   Estimator estimator = Estimator::per_lobe;
+  int light_candidates = 1;        ///< lights of which a vertex takes one by its estimated effect
   int built_for = kBuiltForScene;  ///< a row of kBuiltForTable: the scene alone, or with more features
   Shading shading = Shading::present_lobes;
   std::uint64_t seed = 1;
@@ -99,6 +101,7 @@ struct ProgramConfig {
   bool casts_shadow_rays() const { return program != Program::segments && features.lights.any(); }
   bool buffers_loads() const { return buffer_loads && n > 0; }
   bool buffers_saves() const { return buffer_saves && n > 0; }
+  bool resamples_lights() const { return casts_shadow_rays() && light_candidates > 1; }
   int load_buffers() const { return buffers_loads() ? n + 1 : 1; }
   int save_buffers() const { return buffers_saves() ? n + 1 : 1; }
 };

@@ -113,6 +113,28 @@ struct LightClass {
   std::int32_t count = 0;
 };
 
+/// A light as a candidate of the light that a vertex samples (kernels/light_candidates.hpp): what it takes to
+/// estimate the light's effect.
+struct LightCandidate {
+  vec3<float> centre{};  ///< of a light far away: a point in its direction, far outside the scene
+  vec3<float> axis{};    ///< where it shines to, unit length; 0 if it shines all around
+  float radius = 0;      ///< around the centre
+  float weight = 0;      ///< radiant intensity along the axis over the probability of the light
+};
+
+/// In SRAM: a candidate, and what is left of the random number that chose it.
+struct CandidateLookUp {
+  std::uint64_t place = 0;  ///< mono address of the LightCandidate
+  double rest = 0;          ///< uniform in [0, 1)
+  LightCandidate candidate{};
+};
+
+/// In SRAM: how one of the candidates is taken.
+struct LightResampling {
+  double choice = 0;  ///< random number
+  double factor = 1;  ///< of the contribution of the light that was taken
+};
+
 /// Record of the ray bin. With direct lighting, a slot's ray is the next segment of its path or the shadow
 /// ray of the last segment.
 struct RayRecord {

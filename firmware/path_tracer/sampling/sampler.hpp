@@ -65,15 +65,39 @@ struct LightTable {
   int count = 0;  ///< entries of the cdf
 };
 
+/// The light that a number in (0, 1) stands for, with the unused part of the number.
+inline CdfEntry choose_light_by(const LightTable& table, const cn::poly<double>& u) {
+  return table.classes == nullptr ? sample_cdf_stretched(table.cdf, table.count, u)
+                                  : sample_light_class(table.cdf, table.classes, table.count, u);
+}
+
+/// Numbers for the candidates of a vertex's light.
+struct CandidateNumbers {
+  cn::poly<double> light;     ///< chooses lights; its unused part is one coordinate of the position
+  cn::poly<double> position;  ///< the other coordinate
+  cn::poly<double> choice;    ///< among the candidates
+};
+
+inline CandidateNumbers candidate_numbers(Sampler sampler, std::uint64_t seed,
+                                          const cn::poly<std::int32_t>& pixel,
+                                          const cn::poly<std::int32_t>& sample,
+                                          const cn::poly<std::int32_t>& depth) {
+  if (sampler == Sampler::sobol) {
+    const SobolPoint point = sobol_point(seed, pixel, sample, depth, Purpose::light);
+    const UniformPair pair = sobol_pair(point);
+    return {pair.u, pair.v, sobol_single(point)};
+  }
+  const Uniform4 random = uniform4(seed, pixel, sample, depth, Purpose::light);
+  return {random.value[2], random.value[1], random.value[3]};
+}
+
 inline LightNumbers light_numbers(Sampler sampler, std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
                                   const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
                                   const LightTable& table) {
   if (sampler == Sampler::sobol) {
     // The first number chooses the light, and its unused part the position: both are stratified together.
     const UniformPair pair = sobol_pair(sobol_point(seed, pixel, sample, depth, Purpose::light));
-    const CdfEntry chosen = table.classes == nullptr
-                                ? sample_cdf_stretched(table.cdf, table.count, pair.u)
-                                : sample_light_class(table.cdf, table.classes, table.count, pair.u);
+    const CdfEntry chosen = choose_light_by(table, pair.u);
     return {chosen.entry, {chosen.rest, pair.v}};
   }
   const Uniform4 random = uniform4(seed, pixel, sample, depth, Purpose::light);

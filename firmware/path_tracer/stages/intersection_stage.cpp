@@ -7,7 +7,11 @@ namespace path_tracer {
 int IntersectionStage::load_bytes(const ProgramConfig& config) {
   const RecordSizes sizes(config.features);
   const int bytes = sizes.hit + sizes.surface + sizes.look_ups + sizes.path;
-  return config.casts_shadow_rays() ? bytes + int{sizeof(LightRecord)} : bytes;
+  const int of_candidates =
+      config.resamples_lights()
+          ? int{sizeof(LightResampling)} + config.light_candidates * int{sizeof(CandidateLookUp)}
+          : 0;
+  return config.casts_shadow_rays() ? bytes + int{sizeof(LightRecord)} + of_candidates : bytes;
 }
 
 int IntersectionStage::save_bytes(const ProgramConfig& config) {
@@ -27,6 +31,8 @@ IntersectionStage::Loads IntersectionStage::loads(std::uint64_t step) const {
   BufferCutter same_place(cutter);
   loads.path = cutter.take_bytes<PathRecord>(sizes.path);
   loads.light = cutter.take<LightRecord>();
+  loads.resampling = cutter.take<LightResampling>();
+  loads.candidates = cutter.take<CandidateLookUp>(context_.config.light_candidates);
   loads.lighting = same_place.take_bytes<LightingRecord>(sizes.lighting);
   return loads;
 }
@@ -74,8 +80,9 @@ void IntersectionStage::load_records(std::uint64_t step, int block) {
   load_surfaces(step, block);
   load_slots(SlotRecord::path, step, block, with_tail(to.path, sizes.path), segments);
   if (!context_.config.casts_shadow_rays()) return;
-  context_.loads.copy_m2p(step, block_of_slots(block), to.light.span(),
-                          context_.machine.places_in(bin.light_place), segments);
+  if (!context_.config.resamples_lights())
+    context_.loads.copy_m2p(step, block_of_slots(block), to.light.span(),
+                            context_.machine.places_in(bin.light_place), segments);
   load_slots(SlotRecord::lighting, step, block, with_tail(to.lighting, sizes.lighting), bin.shadow);
 }
 
@@ -95,7 +102,38 @@ void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
 }
 
 void IntersectionStage::prepare(std::uint64_t step, int block) {
-  load_all_texels(step, block);
+  if (context_.config.features.looks_up()) load_all_texels(step, block);
+  if (context_.config.resamples_lights()) load_resampled_lights(step, block);
+}
+
+void IntersectionStage::load_resampled_lights(std::uint64_t step, int block) {
+  const Bins::Block& bin = rays(block);
+  const LaneMask hits = bin.hit_something.without(bin.shadow);
+  if (!hits.any()) return;
+  const Loads from = loads(step);
+  LightCandidatesArguments arguments;
+  arguments.hit = from.hit;
+  arguments.surface = from.surface;
+  arguments.path = from.path;
+  arguments.light_table = read_light_table(context_.machine, context_.layout);
+  arguments.lights = context_.layout.lights.address;
+  arguments.candidates = context_.layout.light_candidates.address;
+  arguments.sampler = context_.config.sampler;
+  arguments.seed = context_.config.seed;
+  arguments.count = context_.config.light_candidates;
+  arguments.look_ups = from.candidates;
+  arguments.resampling = from.resampling;
+  arguments.light_place = bin.light_place;
+  context_.loads.wait(step);
+  context_.machine.run(context_.kernels.find_light_candidates, arguments, hits);
+  for (int i = 0; i < arguments.count; ++i)
+    context_.loads.copy_m2p(
+        step, block_of_slots(block), from.candidates[i].part(&CandidateLookUp::candidate).span(),
+        context_.machine.places_in(from.candidates[i].field(&CandidateLookUp::place)), hits);
+  context_.loads.wait(step);
+  context_.machine.run(context_.kernels.resample_light, arguments, hits);
+  context_.loads.copy_m2p(step, block_of_slots(block), from.light.span(),
+                          context_.machine.places_in(bin.light_place), hits);
 }
 
 void IntersectionStage::load_all_texels(std::uint64_t step, int block) {
@@ -157,6 +195,8 @@ void IntersectionStage::process_segments(std::uint64_t step, int block) {
   arguments.surface = from.surface;
   arguments.path = from.path;
   arguments.light = from.light;
+  arguments.resamples_lights = context_.config.resamples_lights();
+  arguments.resampling = from.resampling;
   arguments.sampler = context_.config.sampler;
   arguments.light_sampling = context_.config.light_sampling;
   arguments.seed = context_.config.seed;

@@ -19,10 +19,12 @@ class IntersectionStage : public Stage {
 
   const char* name() const override { return "intersection stage"; }
   void load(std::uint64_t step, int block) override;
-  bool prepares() const override { return context_.config.features.looks_up(); }
+  bool prepares() const override {
+    return context_.config.features.looks_up() || context_.config.resamples_lights();
+  }
   /// Surfaces with their tails take too much SRAM for buffers of their own.
   bool loads_early() const override { return false; }
-  /// Loads texels.
+  /// Loads texels, and lights that are chosen by what was hit.
   void prepare(std::uint64_t step, int block) override;
   void process(std::uint64_t step, int block) override;
   void save(std::uint64_t step, int block) override;
@@ -41,6 +43,8 @@ class IntersectionStage : public Stage {
   /// Loads all that does not depend on textures.
   void load_records(std::uint64_t step, int block);
   void load_all_texels(std::uint64_t step, int block);
+  /// Takes one of several candidates as the light of each vertex, and loads it.
+  void load_resampled_lights(std::uint64_t step, int block);
   void process_segments(std::uint64_t step, int block);
   void process_shadow_rays(std::uint64_t step, int block);
 
@@ -51,6 +55,8 @@ class IntersectionStage : public Stage {
     PolyPointer<TextureLookUp> look_ups;
     PolyPointer<PathRecord> path;  // segments
     PolyPointer<LightRecord> light;
+    PolyPointer<LightResampling> resampling;
+    PolyPointer<CandidateLookUp> candidates;
     PolyPointer<LightingRecord> lighting;  // shadow rays
   };
   struct Saves {

@@ -114,16 +114,6 @@ void PathStage::list_finished(std::uint64_t step) {
   finished_count_ += count;
 }
 
-LightTable PathStage::light_table() const {
-  const Layout& layout = context_.layout;
-  LightTable table;
-  const bool has_classes = layout.light_class_count > 0;
-  table.count = has_classes ? layout.light_class_count : layout.light_count;
-  table.cdf = context_.machine.read_mono(layout.light_cdf, std::size_t(table.count));
-  if (has_classes) table.classes = context_.machine.read_mono(layout.light_classes, std::size_t(table.count));
-  return table;
-}
-
 /// Gathers the list's entries for the paths that start, straight to where their records are made. The step
 /// waits for them: which slots start a path is known no earlier. Their places lie where the rays will.
 void PathStage::load_listed(std::uint64_t step, int block, std::int32_t started) {
@@ -156,8 +146,8 @@ void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   arguments.ended = &ended_;
   arguments.finished = &finished_;
   arguments.camera = context_.machine.read_mono(context_.layout.camera);
-  if (context_.config.casts_shadow_rays()) {
-    arguments.light_table = light_table();
+  if (context_.config.casts_shadow_rays() && !context_.config.resamples_lights()) {
+    arguments.light_table = read_light_table(context_.machine, context_.layout);
     arguments.lights = context_.layout.lights.address;
     arguments.light_place = bin.light_place;
   }

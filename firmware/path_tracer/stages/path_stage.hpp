@@ -57,7 +57,6 @@ class PathStage : public Stage {
   Saves saves(std::uint64_t step) const;
   void append_vertices(std::uint64_t step, int block);
   void list_finished(std::uint64_t step);
-  LightTable light_table() const;
   void load_listed(std::uint64_t step, int block, std::int32_t started);
   void continue_paths(std::uint64_t step, int block, int ended_count);
   void count_segments(int block);

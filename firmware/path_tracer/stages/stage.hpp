@@ -30,6 +30,16 @@ inline const TriangleRecord* read_triangles(cn::Machine& machine, const Layout& 
   return &of_array(cn::MonoPointer<LayeredTriangleRecord>{layout.triangles.address})->triangle;
 }
 
+/// How the scene's lights are chosen.
+inline LightTable read_light_table(cn::Machine& machine, const Layout& layout) {
+  LightTable table;
+  const bool has_classes = layout.light_class_count > 0;
+  table.count = has_classes ? layout.light_class_count : layout.light_count;
+  table.cdf = machine.read_mono(layout.light_cdf, std::size_t(table.count));
+  if (has_classes) table.classes = machine.read_mono(layout.light_classes, std::size_t(table.count));
+  return table;
+}
+
 /// One kind of step: loads a block, processes it and saves it. The pipeline (step_pipeline.hpp) decides when.
 class Stage {
  public:

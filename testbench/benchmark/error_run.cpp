@@ -5,7 +5,6 @@
 #include "testbench/film/light_pixels.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/run/render_parts.hpp"
-#include "testbench/run/traversal_choice.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -68,9 +67,10 @@ std::vector<const path_tracer::ProgramOption*> options_of_curves() {
 }
 
 path_tracer::ProgramConfig program_for(const Scene& scene, const model::ChipConfig& chip,
-                                       const path_tracer::ProgramConfig& program) {
+                                       const path_tracer::ProgramConfig& program, const GivenOptions& given) {
   path_tracer::ProgramConfig fitted = built_for(scene, program);
-  choose_tree(TriangleCount(scene), chip, {}, fitted);
+  if (given.count("light_candidates") == 0) fitted.light_candidates = suited_light_candidates(scene);
+  choose_tree(TriangleCount(scene), chip, given, fitted);
   return fitted;
 }
 

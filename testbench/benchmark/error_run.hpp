@@ -7,6 +7,7 @@
 #include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/film/error_curve.hpp"
 #include "testbench/run/render.hpp"
+#include "testbench/run/traversal_choice.hpp"
 
 namespace testbench {
 
@@ -14,9 +15,12 @@ namespace testbench {
 /// simulated time and energy.
 std::vector<const path_tracer::ProgramOption*> options_of_curves();
 
-/// The program built for the scene, with the traversal that suits scene and chip, as `csx600 render` has it.
+/// The program built for the scene, with the traversal and the light candidates that suit scene and chip, as
+/// `csx600 render` has it.
+/// @param given what is not chosen
 path_tracer::ProgramConfig program_for(const Scene& scene, const model::ChipConfig& chip,
-                                       const path_tracer::ProgramConfig& program);
+                                       const path_tracer::ProgramConfig& program,
+                                       const GivenOptions& given = {});
 
 /// Error of one scene with one set of options, against the number of samples.
 struct ErrorCurve {

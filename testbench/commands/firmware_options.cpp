@@ -92,6 +92,12 @@ void FirmwareLists::add_to(CLI::App& command, const ProgramConfig& defaults,
   }
 }
 
+GivenOptions FirmwareLists::given() const {
+  GivenOptions given;
+  for (const auto& [option, values] : lists_) given.insert(option->name);
+  return given;
+}
+
 std::vector<ProgramConfig> FirmwareLists::product(const ProgramConfig& defaults) const {
   std::vector<ProgramConfig> programs{defaults};
   for (const auto& [option, values] : lists_) {

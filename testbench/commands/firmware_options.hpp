@@ -36,6 +36,8 @@ class FirmwareLists {
   void add_to(CLI::App& command, const path_tracer::ProgramConfig& defaults,
               const std::vector<const path_tracer::ProgramOption*>& options);
 
+  GivenOptions given() const;
+
   /// The defaults with every combination of the values given; the lists given last vary fastest.
   std::vector<path_tracer::ProgramConfig> product(const path_tracer::ProgramConfig& defaults) const;
 

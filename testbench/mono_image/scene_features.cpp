@@ -123,4 +123,17 @@ path_tracer::ProgramConfig built_for(const Scene& scene, path_tracer::ProgramCon
   return config;
 }
 
+int suited_light_candidates(const Scene& scene) {
+  constexpr std::size_t kFewLights = 3;  // below, candidates cost more than they gain (docs/lights.md)
+  const MeanEmission emission(scene);
+  const auto emitting = std::size_t(std::count_if(
+      scene.triangles.begin(), scene.triangles.end(),
+      [&](const Triangle& triangle) { return emission.of_material(triangle.material) != glm::dvec3(0.0); }));
+  const auto near =
+      std::size_t(std::count_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+        return light.kind == LightKind::point || light.kind == LightKind::spot;
+      }));
+  return (emitting + 1) / 2 + near < kFewLights ? 1 : path_tracer::kMaxLightCandidates;
+}
+
 }  // namespace testbench

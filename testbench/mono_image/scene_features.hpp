@@ -14,4 +14,8 @@ void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes&
 /// The options with the features of the scene.
 path_tracer::ProgramConfig built_for(const Scene& scene, path_tracer::ProgramConfig config);
 
+/// How many candidates pay (ProgramConfig::light_candidates), by the number of lights within the scene; two
+/// triangles count as one.
+int suited_light_candidates(const Scene& scene);
+
 }  // namespace testbench

@@ -234,7 +234,18 @@ std::string choose_tree(const TriangleCount& count, const model::ChipConfig& chi
     program.traversal = choice.traversal;
     reason = choice.reason;
   }
-  if (program.uses_tree()) program.tree = tree_that_fits(count, program, chip, overrides);
+  const path_tracer::TreeShape whole = program.tree;
+  const auto fit_tree = [&] {
+    if (!program.uses_tree()) return;
+    program.tree = whole;
+    program.tree = tree_that_fits(count, program, chip, overrides);
+  };
+  fit_tree();
+  while (program.light_candidates > 1 && given.count("light_candidates") == 0 &&
+         bytes_left(program, chip, count.has_layers) < 0) {
+    program.light_candidates /= 2;
+    fit_tree();
+  }
   complete_traversal(count, chip, program);
   return reason;
 }

@@ -80,7 +80,8 @@ void complete_traversal(const TriangleCount& count, const model::ChipConfig& chi
 /// Names of the firmware options that the user gave (program_options.hpp).
 using GivenOptions = std::set<std::string>;
 
-/// Chooses every option of the tree that was not given. Returns why the traversal was chosen, in a line; ""
+/// Chooses every option of the tree that was not given. Has fewer light candidates, unless they were given,
+/// where the SRAM has no room for as many. Returns why the traversal was chosen, in a line; ""
 /// if it was given. Throws InputError for a program that the firmware refuses.
 std::string choose_tree(const TriangleCount& count, const model::ChipConfig& chip, const GivenOptions& given,
                         path_tracer::ProgramConfig& program);

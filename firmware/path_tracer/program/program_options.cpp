@@ -168,9 +168,10 @@ Options sampling() {
                                             "light of emitting triangles: by shadow rays, by shadow rays and "
                                             "hits weighed against each other, or "
                                             "as suits each surface"),
-          one_of<&ProgramConfig::light_candidates>(
-              "light_candidates", "lights", 1, {1, 2, 4, kMaxLightCandidates},
-              "lights of which a vertex takes one by its estimated effect there; 1: none is estimated"),
+          chosen("8 where lights are many",
+                 one_of<&ProgramConfig::light_candidates>(
+                     "light_candidates", "lights", 1, {1, 2, 4, kMaxLightCandidates},
+                     "lights of which a vertex takes one by its estimated effect there; 1: by chance alone")),
           integer<&ProgramConfig::roulette_start>("roulette_start", "segments", 3, {0, kMaxSegments},
                                                   "segments that a path lives without Russian roulette"),
           real<&ProgramConfig::max_survival>("max_survival", "-", 0.999999, {0, 1},

@@ -116,7 +116,7 @@ std::vector<ReferencedScene> BenchErrorCommand::load_all(
 RenderOptions BenchErrorCommand::options_of(const Scene& scene,
                                             const path_tracer::ProgramConfig& program) const {
   RenderOptions of = options;
-  of.program = program_for(scene, of.chip, program);
+  of.program = program_for(scene, of.chip, program, firmware.given());
   return of;
 }
 

@@ -163,6 +163,43 @@ INSTANTIATE_TEST_SUITE_P(Styles, OneRequestForBoth,
                                                                                    : "ApproximatelyTimed";
                          });
 
+TEST_F(OnChipSram, AFourthInitiatorHasALinkOfItsOwn) {
+  test_support::TestInitiator other("other");
+  build_with_sram();
+  const Initiator number = network->bind_initiator(other.socket);
+  elaborate();
+  EXPECT_EQ(int(number), 3);
+  EXPECT_EQ(send(control, TLM_READ_COMMAND, kSram, 64, 100), sc_time(117, SC_NS));
+  // Its request passes at 103; the port of the SRAM is free at 115: 115..123; 2 cycles: 125.
+  EXPECT_EQ(send(other, TLM_READ_COMMAND, kSram + 64, 64, 100), sc_time(125, SC_NS));
+  EXPECT_EQ(network->statistics(number).packets, 2u);
+  EXPECT_EQ(network->statistics(number).waiting_cycles, 1u) << "behind the request of the control unit";
+  EXPECT_EQ(network->statistics(Initiator::control).packets, 2u);
+  on_chip_sram->socket->invalidate_direct_mem_ptr(0, 7);
+  EXPECT_EQ(other.invalidations, 1);
+}
+
+TEST_F(OnChipSram, AnotherMemoryJoinsTheMapAndAnOverlappingOneDoesNot) {
+  test_support::MinimalMemory joined("joined", 256, sc_time(3, SC_NS));
+  build_with_sram();
+  try {
+    network->bind(joined.socket, "refused", {kSram + 4088, 256}, {8, 1});
+    FAIL() << "accepted";
+  } catch (const model::AddressMapError& error) {
+    EXPECT_STREQ(error.what(),
+                 "address map: refused: found 256 bytes at 0x10000000ff8; allowed: addresses outside "
+                 "on_chip_sram (0x10000000000 to 0x10000000fff)");
+  }
+  network->bind(joined.socket, "joined", {kSram + 8192, 256}, {16, 4});
+  elaborate();
+  // Request there at 108, the answer at 111; port 108..112, link 108..116, 8 cycles back.
+  EXPECT_EQ(send(control, TLM_READ_COMMAND, kSram + 8192 + 192, 64, 100), sc_time(124, SC_NS));
+  EXPECT_EQ(joined.reads, 1);
+  engine->enqueue(write(cn::MonoPlaces::array(kSram + 8192, 32), 32, kAll), 1000);
+  signal();
+  EXPECT_EQ(joined.writes, 1) << "the engine follows the map";
+}
+
 TEST_F(OnChipSram, ApproximatelyTimedOnePeTakesExactly) {
   build_with_sram(model::TimingStyle::approximately_timed);
   sram_word(64) = 77;

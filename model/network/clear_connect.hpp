@@ -46,7 +46,7 @@ class ClearConnect : public sc_core::sc_module {
   /// Binds a memory at further addresses, before the simulation starts. Throws AddressMapError when the range
   /// is empty or overlaps another.
   Port bind(tlm::tlm_target_socket<>& memory, const std::string& name, const cn::MonoRange& range,
-            const PortConfig& port);
+            const PortConfig& config);
   /// Binds an initiator beside the chip's own, with a link of its own, before the simulation starts.
   Initiator bind_initiator(tlm::tlm_initiator_socket<>& initiator);
   /// Which memory answers where. It grows with bind().

@@ -61,16 +61,16 @@ ClearConnectTiming::Passage ClearConnectTiming::send(Initiator initiator, Port t
 }
 
 Cycles ClearConnectTiming::backward(Initiator initiator, std::uint64_t bytes, std::uint64_t packets,
-                                    Cycles first, Cycles last, Port of) {
+                                    Cycles first, Cycles last, Port port) {
   Link& to = link(initiator);
-  PortState& port = port_state(of);
+  PortState& from = port_state(port);
   to.statistics.packets += packets;
   to.statistics.bytes += bytes;
-  const Cycles port_start = wait_for_port(to, port.backward_free, first);
-  port.backward_free = port_start + port_cycles(bytes, of);
-  if (port.observer != nullptr) port.observer->passed(initiator, false, port_start, port.backward_free);
+  const Cycles port_start = wait_for_port(to, from.backward_free, first);
+  from.backward_free = port_start + port_cycles(bytes, port);
+  if (from.observer != nullptr) from.observer->passed(initiator, false, port_start, from.backward_free);
   to.backward_free = std::max(port_start, to.backward_free) + cycles_at_width(bytes, link_bytes_per_cycle_);
-  return std::max({to.backward_free, port.backward_free, last}) + port.latency_cycles;
+  return std::max({to.backward_free, from.backward_free, last}) + from.latency_cycles;
 }
 
 Cycles ClearConnectTiming::wait_for_port(Link& link, Cycles port_free, Cycles ready) {

@@ -24,6 +24,9 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
       mono_ddr(memory == MonoMemory::ddr
                    ? std::make_unique<MonoDdr>("mono_ddr", config_, clock, event_queue.get())
                    : nullptr),
+      on_chip_sram(config_.on_chip_sram.size_bytes > 0
+                       ? std::make_unique<OnChipSram>("on_chip_sram", config_, clock, event_queue.get())
+                       : nullptr),
       host_link("host_link", config_, event_queue.get()) {
   control_unit.pio.bind(pio_engine.port);
   control_unit.mono_socket.bind(clear_connect.control_socket);
@@ -34,6 +37,11 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
   clear_connect.host_traffic.bind(host_link.traffic);
   control_unit.host_traffic.bind(host_link.traffic);
   if (mono_ddr) clear_connect.ddr_socket.bind(mono_ddr->socket);
+  if (on_chip_sram)
+    clear_connect.bind(on_chip_sram->socket, kOnChipSramRange, on_chip_sram_range(config_),
+                       {config_.on_chip_sram.bytes_per_cycle, config_.on_chip_sram.hops});
+  control_unit.follow(clear_connect.map());
+  pio_engine.follow(clear_connect.map());
 }
 
 }  // namespace model

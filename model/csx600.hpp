@@ -9,6 +9,7 @@
 #include "model/control/control_unit.hpp"
 #include "model/host_link/host_link.hpp"
 #include "model/memory/mono_ddr.hpp"
+#include "model/memory/on_chip_sram.hpp"
 #include "model/network/clear_connect.hpp"
 #include "model/pe_array/pe_array.hpp"
 #include "model/pe_array/poly_sram.hpp"
@@ -23,11 +24,12 @@ enum class MonoMemory : std::uint8_t {
   bound_outside,  ///< any TLM-2.0 target of ddr.size_bytes, bound to clear_connect.ddr_socket before the run
 };
 
-/// One ClearSpeed CSX600 with its DDR2 and its link to the host.
+/// One ClearSpeed CSX600 with its DDR2 and its link to the host. Memories of others join the address map by
+/// clear_connect.bind().
 ///
 ///   control_unit --port--> pio_engine --+
 ///        |                     |        +--> clear_connect --> mono_ddr
-///     pe_array <-- poly_sram <-+        |
+///     pe_array <-- poly_sram <-+        |                +---> on_chip_sram
 ///        control_unit (data cache) -----+
 ///        host_link ---------------------+
 class Csx600 : public sc_core::sc_module {
@@ -46,12 +48,17 @@ class Csx600 : public sc_core::sc_module {
   PolySram poly_sram;
   PioEngine pio_engine;
   ClearConnect clear_connect;
-  const std::unique_ptr<MonoDdr> mono_ddr;  ///< null if the memory is bound outside
+  const std::unique_ptr<MonoDdr> mono_ddr;         ///< null if the memory is bound outside
+  const std::unique_ptr<OnChipSram> on_chip_sram;  ///< null if the chip has none
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }
   /// All zero if the memory is bound outside.
   DdrStatistics ddr_statistics() const { return mono_ddr ? mono_ddr->statistics() : DdrStatistics{}; }
+  /// All zero if the chip has none.
+  OnChipSramStatistics on_chip_sram_statistics() const {
+    return on_chip_sram ? on_chip_sram->statistics() : OnChipSramStatistics{};
+  }
 };
 
 }  // namespace model

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/cn/chip/label.hpp"
+#include "firmware/cn/chip/mono_range.hpp"
 #include "firmware/cn/chip/transfer.hpp"
 #include "firmware/cn/language/kernel.hpp"
 
@@ -118,6 +119,10 @@ class Machine {
     observe_mono(Access::write, to.address, sizeof(T));
     write_mono_bytes(to.address, &value, sizeof(T));
   }
+
+  /// The mono addresses of the memory on the chip, for data that are used often: all transfers reach it as
+  /// they reach the rest of mono memory, sooner and beside it. No bytes if the machine has none.
+  virtual MonoRange scratchpad() const { return {}; }
 
   /// Labels the kernels and requests that follow.
   void set_label(const Label& label) { label_ = label; }

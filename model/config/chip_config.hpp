@@ -54,6 +54,7 @@ struct ChipConfig {
     int packet_bytes;
     int hop_cycles;
     int hops_to_ddr;
+    int ddr_port_bytes_per_cycle;  ///< 0: as wide as the DDR
   } clear_connect;
 
   struct Ddr {
@@ -70,6 +71,15 @@ struct ChipConfig {
     int queue_transactions;  ///< at most so many at a time; loosely timed there is no bound
   } ddr;
 
+  /// Memory on the chip that all units reach over the network. No bytes: the chip has none.
+  struct OnChipSram {
+    std::uint64_t size_bytes;
+    std::uint64_t first_address;  ///< mono address of its first byte
+    int bytes_per_cycle;
+    int latency_cycles;  ///< from the arrival of a request to its first byte
+    int hops;            ///< from an initiator to its port of the network
+  } on_chip_sram;
+
   struct Host {
     double bytes_per_second;
     int latency_cycles;  ///< before the bytes of each of the host's DMAs
@@ -79,11 +89,12 @@ struct ChipConfig {
   struct Energy {
     double chip_scale;  ///< factor for all on-chip picojoules below
     std::array<double, cn::kInstructionClasses>
-        picojoules;                   ///< an instruction of an enabled PE, by class; `mono` is unused
-    double pe_clock_picojoules;       ///< a PE and cycle, enabled or not
-    double control_unit_picojoules;   ///< a cycle that the control unit does not wait
-    double pio_picojoules_per_byte;   ///< moved by the PIO engine
-    double clear_connect_picojoules;  ///< a byte and hop
+        picojoules;                           ///< an instruction of an enabled PE, by class; `mono` is unused
+    double pe_clock_picojoules;               ///< a PE and cycle, enabled or not
+    double control_unit_picojoules;           ///< a cycle that the control unit does not wait
+    double pio_picojoules_per_byte;           ///< moved by the PIO engine
+    double clear_connect_picojoules;          ///< a byte and hop
+    double on_chip_sram_picojoules_per_byte;  ///< read or written
     double leakage_watts_per_pe;
     double leakage_watts;            ///< everything but the PEs
     double ddr_activate_picojoules;  ///< a page miss

@@ -210,6 +210,14 @@ void validate(const ChipConfig& config, std::string_view origin) {
   require(ddr.size_bytes % (std::uint64_t(ddr.banks) * std::uint64_t(ddr.page_bytes)) == 0, config,
           "ddr.size_bytes", "a multiple of ddr.banks (" + std::to_string(ddr.banks) + ") times",
           "ddr.page_bytes", origin);
+  const ChipConfig::OnChipSram& sram = config.on_chip_sram;
+  const auto line_bytes = std::uint64_t(control.cache_line_bytes);
+  require(sram.size_bytes == 0 || sram.first_address >= ddr.size_bytes, config, "on_chip_sram.first_address",
+          "at least", "ddr.size_bytes", origin);
+  require(sram.size_bytes == 0 || sram.first_address % line_bytes == 0, config, "on_chip_sram.first_address",
+          multiple, "control.cache_line_bytes", origin);
+  require(sram.size_bytes % line_bytes == 0, config, "on_chip_sram.size_bytes", multiple,
+          "control.cache_line_bytes", origin);
   require(ddr.refresh_interval_cycles == 0 || ddr.refresh_cycles < ddr.refresh_interval_cycles, config,
           "ddr.refresh_cycles", "less than", "ddr.refresh_interval_cycles", origin);
 }

@@ -95,6 +95,10 @@ void declare_rest_of_chip(std::vector<ParameterInfo>& table) {
       "moved by the PIO engine across the array, beside the SRAM word at its end");
   declare<&Energy::clear_connect_picojoules>(table, "energy.clear_connect_picojoules", "pJ/byte/hop", 2,
                                              assumed, "a byte from node to node of the on-chip network");
+  declare<&Energy::on_chip_sram_picojoules_per_byte>(
+      table, "energy.on_chip_sram_picojoules_per_byte", "pJ/byte", 4.75, Confidence::inferred,
+      "read from or written to the on-chip SRAM: 38 pJ for 8 bytes, between 20 of a 32 KB and 100 of a 1 MB "
+      "cache [Horowitz]; its leakage is in energy.leakage_watts");
   declare<&Energy::leakage_watts_per_pe>(
       table, "energy.leakage_watts_per_pe", "W/PE", 0.008, assumed,
       "of a PE; with the rest of the chip 1 W, a tenth of its power, as leakage was at 0.13 um");

@@ -235,6 +235,9 @@ void declare_clear_connect(Parameters& table) {
   table.push_back(integer<group, &ClearConnect::hops_to_ddr>(
       "clear_connect.hops_to_ddr", "hops", 2, {0, 64}, assumed,
       "from PIO engine, caches or host link to the DDR port of the one-dimensional network [S13b]"));
+  table.push_back(integer<group, &ClearConnect::ddr_port_bytes_per_cycle>(
+      "clear_connect.ddr_port_bytes_per_cycle", "bytes/cycle", 0, {0, 4096}, assumed,
+      "of the network's port to the DDR, each way [reference, section 1]; 0: as ddr.bytes_per_cycle"));
 }
 
 void declare_ddr_geometry(Parameters& table) {
@@ -282,6 +285,29 @@ void declare_ddr_timing(Parameters& table) {
       "runs only"));
 }
 
+void declare_on_chip_sram(Parameters& table) {
+  constexpr auto group = &ChipConfig::on_chip_sram;
+  constexpr Confidence assumed = Confidence::assumed;
+  using OnChipSram = ChipConfig::OnChipSram;
+  table.push_back(seen_by_firmware(integer<group, &OnChipSram::size_bytes>(
+      "on_chip_sram.size_bytes", "bytes", 131072, {0, std::int64_t{1} << 30, 1024}, Confidence::inferred,
+      "memory on the chip beside the PEs' own: 1.44 MB a board of two chips [S8] less 2 x 96 x 6 KiB; 0: "
+      "none")));
+  table.push_back(seen_by_firmware(integer<group, &OnChipSram::first_address>(
+      "on_chip_sram.first_address", "address", std::int64_t{1} << 40,
+      {0, std::int64_t{1} << 60, std::int64_t{1} << 16}, assumed,
+      "mono address of its first byte: above all DDR, with a hole between")));
+  table.push_back(integer<group, &OnChipSram::bytes_per_cycle>(
+      "on_chip_sram.bytes_per_cycle", "bytes/cycle", 16, {1, 4096}, assumed,
+      "read or written at its one port, taken as wide as the port to the DDR"));
+  table.push_back(integer<group, &OnChipSram::latency_cycles>(
+      "on_chip_sram.latency_cycles", "cycles", 4, {0, kMaxCycles}, assumed,
+      "from a request's arrival to its first byte, pipelined; a few clocks of a large SRAM at 210 MHz"));
+  table.push_back(integer<group, &OnChipSram::hops>(
+      "on_chip_sram.hops", "hops", 2, {0, 64}, assumed,
+      "from PIO engine, caches or host link to its port, as clear_connect.hops_to_ddr"));
+}
+
 void declare_host(Parameters& table) {
   constexpr auto group = &ChipConfig::host;
   using Host = ChipConfig::Host;
@@ -306,6 +332,7 @@ Parameters declare_parameters() {
   declare_clear_connect(table);
   declare_ddr_geometry(table);
   declare_ddr_timing(table);
+  declare_on_chip_sram(table);
   declare_host(table);
   declare_energy(table);
   return table;

@@ -75,12 +75,17 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
     ledger_.set_observer(observer, sync_cycles);
   }
 
+  /// Mono memory is what `map` says, which lives as long as the control unit; without it, the chip's own
+  /// memories.
+  void follow(const AddressMap& map) { mono_access_.follow(map); }
+
   // cn::Machine:
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;
   void issue_mono(std::uint64_t instructions) override;
   void timed(bool on) override;
   void start_thread(int priority, const std::string& name, std::function<void()> body) override;
+  cn::MonoRange scratchpad() const override { return on_chip_sram_range(config_); }
   void report_fill(int block, const cn::LaneMask& slots) override;
 
   // SemaphorePort:

@@ -18,7 +18,7 @@ MonoAccess::MonoAccess(const ChipConfig& config, const ClockDomain& clock, Cycle
       time_(time),
       socket_(socket),
       cache_(config.control.data_cache_bytes, config.control.cache_line_bytes),
-      window_(config.ddr.size_bytes, poly_memory),
+      window_(address_map(config), poly_memory),
       at_transport_(event_queue != nullptr ? std::make_unique<AtTransport>(*event_queue, socket) : nullptr),
       line_(std::size_t(config.control.cache_line_bytes)) {}
 
@@ -55,7 +55,7 @@ void MonoAccess::write_untimed(cn::MonoAddress to, const void* bytes, std::size_
 void MonoAccess::move_untimed(const cn::Transfer& transfer) {
   window_.check_span(transfer, 0);
   window_.check_places(transfer, 0);
-  window_.move(transfer, memory());
+  window_.move(transfer, window_.range_of(transfer), memory());
 }
 
 void MonoAccess::send(tlm::tlm_command command, cn::MonoAddress address, std::uint8_t* data,

@@ -4,15 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "firmware/cn/chip/mono_range.hpp"
 #include "firmware/cn/chip/transfer.hpp"
 
 namespace model {
 
-/// A run of bytes in mono memory.
-struct MonoRange {
-  cn::MonoAddress first = 0;
-  std::uint64_t bytes = 0;
-};
+using cn::MonoRange;
 
 /// Where a transfer touches mono memory: a piece of equal length for each enabled PE. An array is kept as its
 /// start and stride, a gather's or scatter's addresses are copied.

@@ -11,55 +11,71 @@ Cycles cycles_at_width(std::uint64_t bytes, const Divisor& bytes_per_cycle) {
 
 }  // namespace
 
-ClearConnectTiming::ClearConnectTiming(const ChipConfig::ClearConnect& config, int ddr_port_bytes_per_cycle)
+ClearConnectTiming::ClearConnectTiming(const ChipConfig::ClearConnect& config, int ddr_bytes_per_cycle)
     : packet_bytes_(std::uint64_t(config.packet_bytes)),
       link_bytes_per_cycle_(std::uint64_t(config.bytes_per_cycle)),
-      port_bytes_per_cycle_(std::uint64_t(ddr_port_bytes_per_cycle)),
-      latency_cycles_(Cycles(config.hop_cycles) * Cycles(config.hops_to_ddr)) {}
+      hop_cycles_(config.hop_cycles),
+      links_(kInitiators) {
+  const int port = config.ddr_port_bytes_per_cycle;
+  add_port({port > 0 ? port : ddr_bytes_per_cycle, config.hops_to_ddr});
+}
 
-Cycles ClearConnectTiming::port_cycles(std::uint64_t bytes) const {
-  return cycles_at_width(bytes, port_bytes_per_cycle_);
+Port ClearConnectTiming::add_port(const PortConfig& port) {
+  ports_.push_back({Divisor(std::uint64_t(port.bytes_per_cycle)), Cycles(hop_cycles_) * Cycles(port.hops)});
+  return static_cast<Port>(ports_.size() - 1);
+}
+
+Initiator ClearConnectTiming::add_initiator() {
+  links_.emplace_back();
+  return static_cast<Initiator>(links_.size() - 1);
+}
+
+Cycles ClearConnectTiming::port_cycles(std::uint64_t bytes, Port port) const {
+  return cycles_at_width(bytes, ports_[std::size_t(port)].bytes_per_cycle);
 }
 
 ClearConnectTiming::Passage ClearConnectTiming::request(Initiator initiator, std::uint64_t packets,
-                                                        Cycles now) {
-  statistics_[std::size_t(initiator)].packets += packets;
-  return send(initiator, packets, packets, now);
+                                                        Cycles now, Port port) {
+  link(initiator).statistics.packets += packets;
+  return send(initiator, port, packets, packets, now);
 }
 
 ClearConnectTiming::Passage ClearConnectTiming::forward(Initiator initiator, std::uint64_t bytes,
-                                                        std::uint64_t packets, Cycles now) {
-  statistics_[std::size_t(initiator)].packets += packets;
-  statistics_[std::size_t(initiator)].bytes += bytes;
-  return send(initiator, cycles_at_width(bytes, link_bytes_per_cycle_), port_cycles(bytes), now);
+                                                        std::uint64_t packets, Cycles now, Port port) {
+  link(initiator).statistics.packets += packets;
+  link(initiator).statistics.bytes += bytes;
+  return send(initiator, port, cycles_at_width(bytes, link_bytes_per_cycle_), port_cycles(bytes, port), now);
 }
 
-ClearConnectTiming::Passage ClearConnectTiming::send(Initiator initiator, Cycles link_cycles,
+ClearConnectTiming::Passage ClearConnectTiming::send(Initiator initiator, Port to, Cycles link_cycles,
                                                      Cycles port_cycles, Cycles now) {
-  Cycles& link_free = forward_link_free_[std::size_t(initiator)];
-  const Cycles link_start = std::max(now, link_free);
-  link_free = link_start + link_cycles;
-  const Cycles port_start = wait_for_port(initiator, forward_port_free_, link_start + latency_cycles_);
-  forward_port_free_ = port_start + port_cycles;
-  if (observer_ != nullptr) observer_->passed(initiator, true, port_start, forward_port_free_);
-  return {port_start, std::max(forward_port_free_, link_free + latency_cycles_), link_free};
+  Link& from = link(initiator);
+  PortState& port = port_state(to);
+  const Cycles link_start = std::max(now, from.forward_free);
+  from.forward_free = link_start + link_cycles;
+  const Cycles port_start = wait_for_port(from, port.forward_free, link_start + port.latency_cycles);
+  port.forward_free = port_start + port_cycles;
+  if (port.observer != nullptr) port.observer->passed(initiator, true, port_start, port.forward_free);
+  return {port_start, std::max(port.forward_free, from.forward_free + port.latency_cycles),
+          from.forward_free};
 }
 
 Cycles ClearConnectTiming::backward(Initiator initiator, std::uint64_t bytes, std::uint64_t packets,
-                                    Cycles first, Cycles last) {
-  statistics_[std::size_t(initiator)].packets += packets;
-  statistics_[std::size_t(initiator)].bytes += bytes;
-  const Cycles port_start = wait_for_port(initiator, backward_port_free_, first);
-  backward_port_free_ = port_start + port_cycles(bytes);
-  if (observer_ != nullptr) observer_->passed(initiator, false, port_start, backward_port_free_);
-  Cycles& link_free = backward_link_free_[std::size_t(initiator)];
-  link_free = std::max(port_start, link_free) + cycles_at_width(bytes, link_bytes_per_cycle_);
-  return std::max({link_free, backward_port_free_, last}) + latency_cycles_;
+                                    Cycles first, Cycles last, Port port) {
+  Link& to = link(initiator);
+  PortState& from = port_state(port);
+  to.statistics.packets += packets;
+  to.statistics.bytes += bytes;
+  const Cycles port_start = wait_for_port(to, from.backward_free, first);
+  from.backward_free = port_start + port_cycles(bytes, port);
+  if (from.observer != nullptr) from.observer->passed(initiator, false, port_start, from.backward_free);
+  to.backward_free = std::max(port_start, to.backward_free) + cycles_at_width(bytes, link_bytes_per_cycle_);
+  return std::max({to.backward_free, from.backward_free, last}) + from.latency_cycles;
 }
 
-Cycles ClearConnectTiming::wait_for_port(Initiator initiator, Cycles& port_free, Cycles ready) {
+Cycles ClearConnectTiming::wait_for_port(Link& link, Cycles port_free, Cycles ready) {
   const Cycles start = std::max(ready, port_free);
-  statistics_[std::size_t(initiator)].waiting_cycles += start - ready;
+  link.statistics.waiting_cycles += start - ready;
   return start;
 }
 

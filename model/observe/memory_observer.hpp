@@ -24,6 +24,15 @@ class DdrObserver {
   virtual void commanded(int /*bank*/, DdrCommand /*command*/, std::uint64_t /*row*/, Cycles /*at*/) {}
 };
 
+/// Told what the on-chip SRAM does when it is booked, which may be ahead of SystemC time: in the order of
+/// time at its port.
+class OnChipSramObserver {
+ public:
+  virtual ~OnChipSramObserver() = default;
+  /// An access has the port from its first byte to after its last.
+  virtual void sram_accessed(bool write, Cycles start, Cycles finish) = 0;
+};
+
 enum class Initiator : std::uint8_t;
 
 /// Told who uses the DDR's port of the on-chip network, in the order of time for each direction.

@@ -23,7 +23,7 @@ PioEngine::PioEngine(const sc_core::sc_module_name& name, const ChipConfig& conf
       rules_{Divisor(std::uint64_t(config.clear_connect.packet_bytes)),
              config.pio.consolidate_equal_addresses},
       timing_(config.pio),
-      mono_(config.ddr.size_bytes, poly),
+      mono_(address_map(config), poly),
       requests_(config.pio, timing_,
                 [this](int semaphore, Cycles at) { semaphores->signal_at(semaphore, at); }),
       transactions_(clock, mono_socket, poly_socket, mono_) {
@@ -72,13 +72,16 @@ Cycles PioEngine::wait_for_room(cn::Direction direction, Cycles now) {
 void PioEngine::describe(const cn::Transfer& transfer, PioRequest& request) {
   MonoPieces& pieces = request.addresses.pieces;
   pieces.describe(transfer, poly_.num_pes(), rules_);
-  if (!pieces.within(mono_.size_bytes())) mono_.check_places(transfer, requests_.next_id());
+  request.mono_range = mono_.range_of(pieces);
+  if (request.mono_range != AddressMap::kNowhere) return;
+  mono_.check_places(transfer, requests_.next_id());
+  mono_.check_runs(transfer, pieces, requests_.next_id());
 }
 
 void PioEngine::move_data(const cn::Transfer& transfer, const PioRequest& request) {
   cn::Transfer of_copied_addresses = transfer;  // a scatter may overwrite a table of addresses
   of_copied_addresses.mono = request.addresses.pieces.places();
-  mono_.move(of_copied_addresses, *mono_socket.operator->());
+  mono_.move(of_copied_addresses, request.mono_range, *mono_socket.operator->());
 }
 
 void PioEngine::forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) {

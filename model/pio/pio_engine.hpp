@@ -50,6 +50,8 @@ class PioEngine : public sc_core::sc_module, public PioPort {
     return service_->words_moved_before(cycle);
   }
 
+  /// Mono memory is what `map` says, which lives as long as the engine; without it, the chip's own memories.
+  void follow(const AddressMap& map) { mono_.follow(map); }
   void set_observer(PioObserver* observer) { requests_.set_observer(observer); }
   /// From now on requests take their time but move no data: for firmware that looks at none.
   void leave_data(bool leave) { leaves_data_ = leave; }

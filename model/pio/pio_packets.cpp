@@ -41,7 +41,7 @@ void PioPackets::send_packets(int index) {
         engine.pieces->write() ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND, next.address, next.bytes);
     if (engine.pieces->write())
       mono_.read(next.address, packet.get_data_ptr(), next.bytes, *memory_.operator->());
-    on_the_way_.push_back({&packet, index});
+    on_the_way_.push_back({&packet, next.address, index});
     if (!initiator_.send(packet)) ++engine.unsent;
   }
 }
@@ -52,7 +52,6 @@ bool PioPackets::packet_is_due(const Engine& engine) const {
   return (engine.pieces->write() ? packet.last_piece : packet.first_piece) < engine.addressed;
 }
 
-/// Responses come in the order of the requests, because there is one path through the network.
 bool PioPackets::data_of_next_piece_are_there(const Engine& engine) const {
   return engine.moved < engine.addressed &&
          (engine.next_to_arrive.at_end() || engine.next_to_arrive.packet().first_piece > engine.moved);
@@ -93,8 +92,8 @@ bool PioPackets::is_over(const Engine& engine) const {
 
 void PioPackets::refresh_writes_on_the_way() {
   for (const OnTheWay& way : on_the_way_)
-    if (way.packet->is_write())
-      mono_.read(way.packet->get_address(), way.packet->get_data_ptr(), way.packet->get_data_length(),
+    if (way.packet != nullptr && way.packet->is_write())
+      mono_.read(way.address, way.packet->get_data_ptr(), way.packet->get_data_length(),
                  *memory_.operator->());
 }
 
@@ -109,11 +108,26 @@ void PioPackets::sent(const tlm::tlm_generic_payload& packet) {
   step(index);
 }
 
+void PioPackets::take_data(OnTheWay& way) {
+  const int engine = way.engine;
+  way.packet = nullptr;
+  for (;;) {
+    const auto first = std::find_if(on_the_way_.begin(), on_the_way_.end(),
+                                    [&](const OnTheWay& other) { return is_read_of(engine, other); });
+    if (first == on_the_way_.end() || first->packet != nullptr) return;
+    engines_[std::size_t(engine)].next_to_arrive.advance();
+    on_the_way_.erase(first);
+  }
+}
+
 Cycles PioPackets::responded(tlm::tlm_generic_payload& packet) {
   if (packet.is_response_error()) owner_.failed(packet);
   const auto way = find(packet);
-  if (packet.is_read()) engines_[std::size_t(way->engine)].next_to_arrive.advance();
-  on_the_way_.erase(way);
+  if (packet.is_read()) {
+    take_data(*way);
+  } else {
+    on_the_way_.erase(way);
+  }
   packet.release();
   for (int index = 0; index < int(engines_.size()); ++index) step(index);
   return event_queue_.now();

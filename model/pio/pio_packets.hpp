@@ -26,6 +26,9 @@ namespace model {
 /// - Write: address and data phase of a PE follow each other; a packet leaves when its last byte has come
 ///   out of a PE. Posted: the request is over when its last packet has left the engine.
 ///
+/// Reads that lie in several memories may be answered in another order. Data then keep their place among the
+/// outstanding packets until all before them are there.
+///
 /// Data have moved when the request was queued; packets carry them once more. A write that is on the way is
 /// kept equal to what memory holds, so that none brings back what a later request has replaced.
 class PioPackets {
@@ -62,7 +65,8 @@ class PioPackets {
   };
   enum class Phase : std::uint8_t { setup, address, data };
   struct OnTheWay {
-    tlm::tlm_generic_payload* packet;
+    tlm::tlm_generic_payload* packet;  ///< null: its data are there
+    cn::MonoAddress address;
     int engine;
   };
 
@@ -77,6 +81,11 @@ class PioPackets {
   bool is_over(const Engine& engine) const;
   void sent(const tlm::tlm_generic_payload& packet);
   Cycles responded(tlm::tlm_generic_payload& packet);
+  static bool is_read_of(int engine, const OnTheWay& way) {
+    return way.engine == engine && (way.packet == nullptr || way.packet->is_read());
+  }
+  /// Takes the data of a read; they count when all packets before are there.
+  void take_data(OnTheWay& way);
   bool room() const { return on_the_way_.size() < outstanding_packets_; }
   std::vector<OnTheWay>::iterator find(const tlm::tlm_generic_payload& packet);
 

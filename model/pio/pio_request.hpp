@@ -16,6 +16,7 @@ struct PioRequest {
   cn::PolySpan poly;
   cn::Semaphore done;
   PeAddresses addresses;
+  int mono_range = 0;  ///< MonoWindow::range_of()
   PioEvent event;
   cn::Label label;
   cn::LaneMask enabled;  ///< kept for an observer only

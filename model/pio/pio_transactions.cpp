@@ -23,10 +23,12 @@ std::string refused_by_memory(const tlm::tlm_generic_payload& transaction) {
 Cycles PioTransactions::book_memory(PioRequest& request, Cycles start) {
   const MonoPieces& pieces = request.addresses.pieces;
   sc_core::sc_time delay = delay_until(clock_, start);
-  if (!memory_knows_addresses()) return cycle_of_delay(clock_, book_runs(pieces, delay));
-  send_addresses(mono_socket_, request.addresses, pieces.runs().front().address, delay);
-  check_response(transaction_);
-  return cycle_of_delay(clock_, delay);
+  if (memory_knows_addresses()) {
+    send_addresses(mono_socket_, request.addresses, pieces.runs().front().address, delay);
+    check_response(transaction_);
+    if (request.addresses.served) return cycle_of_delay(clock_, delay);
+  }
+  return cycle_of_delay(clock_, book_runs(pieces, delay));
 }
 
 bool PioTransactions::memory_knows_addresses() {

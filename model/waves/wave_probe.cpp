@@ -151,6 +151,11 @@ void WaveProbe::accessed(bool write, Cycles start, Cycles finish) {
   change(bus_stream, finish, WaveSignal::ddr_bus, 0);
 }
 
+void WaveProbe::sram_accessed(bool write, Cycles start, Cycles finish) {
+  change(sram_stream, start, WaveSignal::on_chip_sram_port, write ? 2 : 1);
+  change(sram_stream, finish, WaveSignal::on_chip_sram_port, 0);
+}
+
 void WaveProbe::moved_data(bool write, Cycles start, Cycles finish) {
   change(data_stream, start, WaveSignal::ddr_data, write ? 2 : 1);
   change(data_stream, finish, WaveSignal::ddr_data, 0);

@@ -32,7 +32,11 @@ struct MemoryCounters {
 /// Turns what the observed units report, ahead of SystemC time and not in one order, into the signals of
 /// wave_signals.hpp. Wakes up only at cycles that were reported, to write what can no longer change. It calls
 /// no observed unit, so no cycle depends on it.
-class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObserver, public PortObserver {
+class WaveProbe : public sc_core::sc_module,
+                  public ChipObserver,
+                  public DdrObserver,
+                  public OnChipSramObserver,
+                  public PortObserver {
  public:
   using MemorySampler = std::function<MemoryCounters()>;
 
@@ -52,6 +56,7 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
   void accessed(bool write, Cycles start, Cycles finish) override;
   void moved_data(bool write, Cycles start, Cycles finish) override;
   void commanded(int bank, DdrCommand command, std::uint64_t row, Cycles at) override;
+  void sram_accessed(bool write, Cycles start, Cycles finish) override;
   void passed(Initiator initiator, bool to_ddr, Cycles start, Cycles finish) override;
   void began_transfer(bool upload, std::uint64_t bytes, Cycles start) override;
   void ended_transfer(bool upload, std::uint64_t bytes, Cycles start, Cycles finish) override;
@@ -91,6 +96,7 @@ class WaveProbe : public sc_core::sc_module, public ChipObserver, public DdrObse
     bus_stream,
     data_stream,
     counts_stream,
+    sram_stream,
     host_stream,
     first_bank_stream
   };

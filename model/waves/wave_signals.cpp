@@ -148,6 +148,8 @@ void add_memory(Rows& rows) {
         "command that the bank got last; an activation includes the precharge before it", kFixed, commands},
        {Signal::ddr_bank_row, "ddr.bank", "row", 32, kNumber, kDetail, WaveCount::bank, kOther,
         "row that was activated last"},
+       {Signal::on_chip_sram_port, "on_chip_sram", "port", 2, kNumber, kUnits, kChip, kOther,
+        "access that has the port of the on-chip SRAM, from its first byte to its last", kFixed, directions},
        {Signal::host_link_state, "host_link", "state", 2, kNumber, kUnits, kChip, kOther,
         "what the link to the host does", kFixed, Names{{0, "idle"}, {1, "upload"}, {2, "download"}}}});
 }

@@ -45,6 +45,7 @@ enum class WaveSignal : std::uint8_t {
   ddr_bytes_written,
   ddr_bank_command,
   ddr_bank_row,
+  on_chip_sram_port,
   host_link_state,
 };
 inline constexpr int kWaveSignals = static_cast<int>(WaveSignal::host_link_state) + 1;

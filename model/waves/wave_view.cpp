@@ -42,6 +42,7 @@ std::string_view group_title(std::string_view scope) {
   if (scope == "pe_array") return "PE array";
   if (scope == "pio") return "programmed I/O";
   if (scope == "ddr") return "DDR";
+  if (scope == "on_chip_sram") return "on-chip SRAM";
   if (scope == "clear_connect") return "ClearConnect";
   if (scope == "host_link") return "host link";
   return scope;

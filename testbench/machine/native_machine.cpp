@@ -4,9 +4,12 @@
 
 namespace testbench {
 
-NativeMachine::NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes)
+NativeMachine::NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes,
+                             cn::MonoRange scratchpad)
     : Machine(num_pes, poly_bytes_per_pe),
       mono_(mono_bytes),
+      scratchpad_(scratchpad),
+      scratchpad_bytes_(scratchpad.bytes),
       threads_(*this, [this](int semaphore) { return semaphores_.at(std::size_t(semaphore)) > 0; }) {}
 
 void NativeMachine::run_firmware(const std::function<void(cn::Machine&)>& firmware) {
@@ -44,28 +47,58 @@ void NativeMachine::sem_wait(cn::Semaphore semaphore) {
 
 void NativeMachine::start_transfer(const cn::Transfer& transfer) {
   const auto bytes = std::uint64_t(transfer.poly.size_bytes);
-  const int outside =
-      cn::first_pe_not(transfer, num_pes(), [&](cn::MonoAddress place) { return is_within(place, bytes); });
-  if (outside >= 0) check_range(transfer.mono[outside], bytes, "transfer");
-  cn::move_data(transfer, poly_memory(), mono_.data());
+  if (!move_within(transfer, {0, mono_.size()}, mono_.data()) &&
+      !move_within(transfer, scratchpad_, scratchpad_bytes_.data())) {
+    const int outside = cn::first_pe_not(
+        transfer, num_pes(), [&](cn::MonoAddress place) { return find(place, bytes) != nullptr; });
+    if (outside >= 0) storage(transfer.mono[outside], bytes, "transfer");
+    for (int pe = 0; pe < num_pes(); ++pe) {
+      if (!transfer.enabled[pe]) continue;
+      cn::Transfer one_pe = transfer;
+      one_pe.enabled = cn::LaneMask();
+      one_pe.enabled.set(pe, true);
+      one_pe.mono = cn::MonoPlaces::array(0, 0);
+      cn::move_data(one_pe, poly_memory(), find(transfer.mono[pe], bytes));
+    }
+  }
   ++semaphores_.at(std::size_t(transfer.done.index));
 }
 
+/// Whether all places lie in `range`; the data have moved then.
+bool NativeMachine::move_within(const cn::Transfer& transfer, const cn::MonoRange& range,
+                                std::uint8_t* bytes) {
+  const auto wanted = std::uint64_t(transfer.poly.size_bytes);
+  const auto contains = [&](cn::MonoAddress place) { return range.contains(place, wanted); };
+  if (cn::first_pe_not(transfer, num_pes(), contains) >= 0) return false;
+  cn::Transfer from_start = transfer;
+  from_start.mono.first -= range.first;
+  cn::move_data(from_start, poly_memory(), bytes);
+  return true;
+}
+
 const void* NativeMachine::read_mono_bytes(cn::MonoAddress from, std::size_t bytes) {
-  check_range(from, bytes, "mono read");
-  return mono_.data() + from;
+  return storage(from, bytes, "mono read");
 }
 
 void NativeMachine::write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) {
-  check_range(to, size, "mono write");
-  std::memcpy(mono_.data() + to, bytes, size);
+  std::memcpy(storage(to, size, "mono write"), bytes, size);
 }
 
-void NativeMachine::check_range(cn::MonoAddress first, std::uint64_t bytes, const char* what) const {
-  if (!is_within(first, bytes))
-    throw cn::MachineFault(std::string(what) + " of " + std::to_string(bytes) + " bytes at " +
-                           std::to_string(first) + " leaves mono memory of " + std::to_string(mono_.size()) +
-                           " bytes");
+std::uint8_t* NativeMachine::find(cn::MonoAddress first, std::uint64_t bytes) {
+  if (cn::MonoRange{0, mono_.size()}.contains(first, bytes)) return mono_.data() + first;
+  if (scratchpad_.contains(first, bytes)) return scratchpad_bytes_.data() + (first - scratchpad_.first);
+  return nullptr;
+}
+
+std::uint8_t* NativeMachine::storage(cn::MonoAddress first, std::uint64_t bytes, const char* what) {
+  if (std::uint8_t* const found = find(first, bytes)) return found;
+  const std::string beside = scratchpad_.bytes == 0
+                                 ? ""
+                                 : " and a scratchpad of " + std::to_string(scratchpad_.bytes) +
+                                       " bytes at " + std::to_string(scratchpad_.first);
+  throw cn::MachineFault(std::string(what) + " of " + std::to_string(bytes) + " bytes at " +
+                         std::to_string(first) + " leaves mono memory of " + std::to_string(mono_.size()) +
+                         " bytes" + beside);
 }
 
 }  // namespace testbench

@@ -14,10 +14,13 @@ namespace testbench {
 /// signal.
 class NativeMachine : public cn::Machine {
  public:
-  NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes);
+  /// @param scratchpad where memory beside the first `mono_bytes` lies, if there is any
+  NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, cn::MonoRange scratchpad = {});
 
   std::uint8_t* mono() { return mono_.data(); }
   std::uint64_t mono_bytes() const { return mono_.size(); }
+  std::uint8_t* scratchpad_bytes() { return scratchpad_bytes_.data(); }
+  cn::MonoRange scratchpad() const override { return scratchpad_; }
 
   /// Sets the host's reaction to a signal of `semaphore`: `service` runs at once, on the firmware's thread,
   /// instead of counting the signal.
@@ -44,13 +47,16 @@ class NativeMachine : public cn::Machine {
   void write_mono_bytes(cn::MonoAddress to, const void* bytes, std::size_t size) override;
 
  private:
-  bool is_within(cn::MonoAddress first, std::uint64_t bytes) const {
-    return first <= mono_.size() && bytes <= mono_.size() - first;
-  }
-  void check_range(cn::MonoAddress first, std::uint64_t bytes, const char* what) const;
+  /// Where these bytes are; null outside memory.
+  std::uint8_t* find(cn::MonoAddress first, std::uint64_t bytes);
+  /// Throws cn::MachineFault outside memory.
+  std::uint8_t* storage(cn::MonoAddress first, std::uint64_t bytes, const char* what);
+  bool move_within(const cn::Transfer& transfer, const cn::MonoRange& range, std::uint8_t* bytes);
 
   bool counts_instructions_ = true;
   std::vector<std::uint8_t> mono_;
+  cn::MonoRange scratchpad_;
+  std::vector<std::uint8_t> scratchpad_bytes_;
   std::array<int, kSemaphores> semaphores_{};
   std::array<std::function<void()>, kSemaphores> services_;
   NativeThreads threads_;

@@ -5,8 +5,8 @@
 namespace testbench {
 
 RecordingMachine::RecordingMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes,
-                                   TimingStream& stream)
-    : NativeMachine(num_pes, poly_bytes_per_pe, mono_bytes), stream_(stream), writer_(stream) {
+                                   TimingStream& stream, cn::MonoRange scratchpad)
+    : NativeMachine(num_pes, poly_bytes_per_pe, mono_bytes, scratchpad), stream_(stream), writer_(stream) {
   stream_.num_pes = num_pes;
 }
 

@@ -10,7 +10,8 @@ namespace testbench {
 class RecordingMachine : public NativeMachine {
  public:
   /// @param stream must be empty; filled while the firmware runs and completed by finish()
-  RecordingMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, TimingStream& stream);
+  RecordingMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, TimingStream& stream,
+                   cn::MonoRange scratchpad = {});
 
   /// Must be called when the firmware has ended.
   void finish();

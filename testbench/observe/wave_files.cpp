@@ -82,6 +82,8 @@ WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
     chip.clear_connect.set_observer(&*probe_);
   const bool shows_ddr = probe_->shows(WaveSignal::ddr_bus) || probe_->shows_ddr_commands();
   if (chip.mono_ddr && shows_ddr) chip.mono_ddr->set_observer(&*probe_, probe_->shows_ddr_commands());
+  if (chip.on_chip_sram && probe_->shows(WaveSignal::on_chip_sram_port))
+    chip.on_chip_sram->set_observer(&*probe_);
 }
 
 void WaveFiles::finish() {

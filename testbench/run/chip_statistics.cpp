@@ -27,6 +27,7 @@ ChipStatistics collect_statistics(const model::Csx600& chip, model::Cycles total
   statistics.pio = chip.pio_engine.statistics();
   statistics.poly_sram = chip.poly_sram.statistics();
   statistics.ddr = chip.ddr_statistics();
+  statistics.on_chip_sram = chip.on_chip_sram_statistics();
   statistics.bus_pio = chip.clear_connect.statistics(model::Initiator::pio);
   statistics.bus_control = chip.clear_connect.statistics(model::Initiator::control);
   statistics.bus_host = chip.clear_connect.statistics(model::Initiator::host);

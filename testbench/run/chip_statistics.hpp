@@ -8,6 +8,7 @@
 #include "model/control/control_statistics.hpp"
 #include "model/host_link/host_link_statistics.hpp"
 #include "model/memory/ddr_timing.hpp"
+#include "model/memory/on_chip_sram_timing.hpp"
 #include "model/network/clear_connect_timing.hpp"
 #include "model/observe/pio_observer.hpp"
 #include "model/pe_array/kernel_statistics.hpp"
@@ -30,6 +31,7 @@ struct ChipStatistics {
   model::PioStatistics pio;
   model::PolySramStatistics poly_sram;
   model::DdrStatistics ddr;
+  model::OnChipSramStatistics on_chip_sram;
   model::ClearConnectStatistics bus_pio;
   model::ClearConnectStatistics bus_control;
   model::ClearConnectStatistics bus_host;

@@ -33,8 +33,11 @@ class Causes {
     chip("control_unit", scale_ * table_.control_unit_picojoules * double(busy_cycles()));
     chip("pio",
          scale_ * table_.pio_picojoules_per_byte * double(run_.pio.bytes_to_poly + run_.pio.bytes_to_mono));
-    chip("clear_connect", scale_ * table_.clear_connect_picojoules * run_.config.clear_connect.hops_to_ddr *
-                              double(run_.bus_pio.bytes + run_.bus_control.bytes + run_.bus_host.bytes));
+    chip("clear_connect",
+         network(run_.config.clear_connect.hops_to_ddr, double(network_bytes()) - sram_bytes()) +
+             network(run_.config.on_chip_sram.hops, sram_bytes()));
+    if (run_.on_chip_sram.accesses > 0)
+      chip("on_chip_sram", scale_ * table_.on_chip_sram_picojoules_per_byte * sram_bytes());
     chip("leakage", (table_.leakage_watts + table_.leakage_watts_per_pe * run_.config.chip.pes) * seconds_);
     add_ddr();
     return std::move(causes_);
@@ -48,6 +51,15 @@ class Causes {
   double executed(InstructionClass c) const {
     return scale_ * run_.config.poly.code_quality_factor * table_.picojoules[std::size_t(c)] *
            double(run_.all_kernels.executed[c]);
+  }
+
+  std::uint64_t network_bytes() const {
+    return run_.bus_pio.bytes + run_.bus_control.bytes + run_.bus_host.bytes;
+  }
+  double sram_bytes() const { return double(run_.on_chip_sram.bytes_read + run_.on_chip_sram.bytes_written); }
+  /// Energy of `bytes` that went from node to node `hops` times.
+  double network(int hops, double bytes) const {
+    return scale_ * table_.clear_connect_picojoules * hops * bytes;
   }
 
   void add_instructions() {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "firmware/path_tracer/path_tracer.hpp"
+#include "model/config/address_map.hpp"
 #include "model/hazards/hazard_checker.hpp"
 #include "testbench/machine/native_machine.hpp"
 #include "testbench/machine/recording_machine.hpp"
@@ -143,9 +144,11 @@ class Run {
 /// A machine without a clock; a recording one where a stream is wanted.
 std::unique_ptr<NativeMachine> native_machine(const model::ChipConfig& chip, std::uint64_t mono_bytes,
                                               TimingStream* record) {
+  const cn::MonoRange scratchpad = model::on_chip_sram_range(chip);
   if (record == nullptr)
-    return std::make_unique<NativeMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes);
-  return std::make_unique<RecordingMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, *record);
+    return std::make_unique<NativeMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, scratchpad);
+  return std::make_unique<RecordingMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, *record,
+                                            scratchpad);
 }
 
 void copy_to(NativeMachine& machine, const MonoImage& image) {

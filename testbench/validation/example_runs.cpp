@@ -116,8 +116,9 @@ void check_product(const DgemmBlocks& blocks, cn::MonoPointer<double> c, const s
   }
 }
 
-/// Writes A and B in the layout that the firmware expects.
-void write_factors(std::vector<std::uint8_t>& mono, const Dgemm::Problem& problem,
+/// Writes A and B in the layout that the firmware expects, to `mono` but for the rows of B that travel.
+void write_factors(std::vector<std::uint8_t>& mono, std::vector<std::uint8_t>& travelling,
+                   cn::MonoPointer<double> first_travelling, const Dgemm::Problem& problem,
                    const DgemmBlocks& blocks) {
   for (std::uint64_t i = 0; i < blocks.m(); ++i)
     for (std::uint64_t l = 0; l < blocks.k(); ++l) write(mono, problem.a, blocks.a(i, l), element_of_a(i, l));
@@ -125,7 +126,7 @@ void write_factors(std::vector<std::uint8_t>& mono, const Dgemm::Problem& proble
     for (std::uint64_t pe = 0; pe < blocks.pes(); ++pe)
       write(mono, problem.b_start, blocks.b_start(pe, j), element_of_b(pe % blocks.k(), j));
     for (std::uint64_t l = 0; l < blocks.k(); ++l)
-      write(mono, problem.b_stream, blocks.b_stream(l, j), element_of_b(l, j));
+      write(travelling, first_travelling, blocks.b_stream(l, j), element_of_b(l, j));
   }
 }
 
@@ -215,7 +216,7 @@ class FftCheck {
 
 }  // namespace
 
-ExampleRun dgemm_run(Dgemm::Problem problem, int num_pes, cn::Level level) {
+ExampleRun dgemm_run(Dgemm::Problem problem, int num_pes, cn::Level level, const cn::MonoRange& scratchpad) {
   const DgemmBlocks blocks(problem, num_pes);
   problem.a = {0};
   problem.b_start = problem.a + blocks.m() * blocks.k();
@@ -223,7 +224,17 @@ ExampleRun dgemm_run(Dgemm::Problem problem, int num_pes, cn::Level level) {
   problem.c = problem.b_stream + blocks.k() * blocks.n();
   ExampleRun run;
   run.mono.resize((problem.c + blocks.m() * blocks.n()).address);
-  write_factors(run.mono, problem, blocks);
+  if (scratchpad.bytes == 0) {
+    write_factors(run.mono, run.mono, problem.b_stream, problem, blocks);
+  } else {
+    run.scratchpad.resize(blocks.k() * blocks.n() * sizeof(double));
+    if (run.scratchpad.size() > scratchpad.bytes)
+      throw InputError("DGEMM needs " + std::to_string(run.scratchpad.size()) +
+                       " bytes on the chip, on_chip_sram.size_bytes allows " +
+                       std::to_string(scratchpad.bytes));
+    write_factors(run.mono, run.scratchpad, {0}, problem, blocks);
+    problem.b_stream = {scratchpad.first};
+  }
   run.firmware = [problem, level](cn::Machine& machine) {
     Dgemm(machine, examples::kernels(level), problem).run();
   };

@@ -24,12 +24,16 @@ constexpr const char* kDesign = "csx600_250mhz";
 /// host.
 class BareChip {
  public:
-  BareChip(const model::ChipConfig& config, const std::vector<std::uint8_t>& mono) : chip_("csx600", config) {
+  BareChip(const model::ChipConfig& config, const std::vector<std::uint8_t>& mono,
+           const std::vector<std::uint8_t>& scratchpad = {})
+      : chip_("csx600", config) {
     if (mono.size() > config.ddr.size_bytes)
       throw InputError("validation needs " + std::to_string(mono.size()) +
                        " bytes of mono memory, ddr.size_bytes allows " +
                        std::to_string(config.ddr.size_bytes));
     std::memcpy(this->mono(), mono.data(), mono.size());
+    if (!scratchpad.empty())
+      std::memcpy(chip_.on_chip_sram->memory().data(), scratchpad.data(), scratchpad.size());
   }
 
   void run(const std::function<void(cn::Machine&)>& firmware) {
@@ -56,7 +60,7 @@ class BareChip {
 
 /// The result of a run as JSON: cycles by cause, and the work done.
 std::string run_example(const model::ChipConfig& config, const ExampleRun& run) {
-  BareChip chip(config, run.mono);
+  BareChip chip(config, run.mono, run.scratchpad);
   chip.run(run.firmware);
   run.check(chip.mono());
   Json json;

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "model/config/chip_parameters.hpp"
+#include "model/csx600.hpp"
 #include "tests/support/native_example.hpp"
+#include "tests/support/systemc_fixture.hpp"
 
 namespace dgemm_test {
 
@@ -34,6 +37,61 @@ TEST(DgemmExample, IsTheHostsProduct) {
     // One strip that computes, as many as the chip's, and more.
     for (const int num_pes : {16, 96, 192}) expect(problem({12, 24, 4}, 1, 2, 3), num_pes, level);
   }
+}
+
+TEST(DgemmExample, RowsOfBMayLieInTheScratchpad) {
+  const Dgemm::Problem of = problem({6, 16, 2}, 3, 2, 2);
+  const cn::MonoRange scratchpad{std::uint64_t{1} << 40, 24 * 2 * 32 * 8};
+  const testbench::ExampleRun run = dgemm_run(of, 24, cn::narrowest_level(), scratchpad);
+  EXPECT_EQ(run.scratchpad.size(), scratchpad.bytes) << "4 x 6 x 2 columns, 16 x 2 rows";
+  const std::vector<std::uint8_t> mono = run_natively(run, 24, scratchpad);
+  EXPECT_EQ(verdict(run, mono), "");
+  const testbench::ExampleRun all_in_ddr = dgemm_run(of, 24, cn::narrowest_level());
+  const std::size_t c_bytes = std::size_t{2} * 16 * 3 * 48 * 8;
+  const std::vector<std::uint8_t> same = run_natively(all_in_ddr, 24);
+  EXPECT_TRUE(
+      std::equal(mono.end() - std::ptrdiff_t(c_bytes), mono.end(), same.end() - std::ptrdiff_t(c_bytes)));
+  EXPECT_THROW(dgemm_run(of, 24, cn::narrowest_level(), {scratchpad.first, scratchpad.bytes - 8}),
+               testbench::InputError);
+}
+
+/// What a run on the chip has counted; its result was right.
+struct ChipRun {
+  model::Cycles cycles;
+  std::uint64_t sram_bytes_read;
+  std::uint64_t ddr_bytes_read;
+};
+
+ChipRun run_on_chip(const Dgemm::Problem& of, bool b_on_chip) {
+  const model::ChipConfig config = model::default_chip_config();
+  const cn::MonoRange scratchpad = b_on_chip ? model::on_chip_sram_range(config) : cn::MonoRange{};
+  const testbench::ExampleRun run = dgemm_run(of, config.chip.pes, cn::narrowest_level(), scratchpad);
+  model::Csx600 chip("chip", config);
+  std::copy(run.mono.begin(), run.mono.end(), chip.mono_ddr->memory().data());
+  std::copy(run.scratchpad.begin(), run.scratchpad.end(), chip.on_chip_sram->memory().begin());
+  chip.control_unit.load(run.firmware);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  chip.control_unit.start();
+  sc_core::sc_start();
+  chip.control_unit.require_finished();
+  run.check(chip.mono_ddr->memory().data());
+  return {chip.control_unit.statistics().total(), chip.on_chip_sram_statistics().bytes_read,
+          chip.ddr_statistics().bytes_read};
+}
+
+class DgemmOnChip : public test_support::SystemCFixture {};
+
+/// The DDR's bytes of B go to the SRAM. It hardly helps: the PIO engine takes as long for its 8 PEs.
+TEST_F(DgemmOnChip, ReadsBFromTheScratchpad) {
+  const Dgemm::Problem of = problem({20, 64, 2}, 2, 1, 3);
+  const ChipRun in_ddr = run_on_chip(of, false);
+  new_context();
+  const ChipRun on_chip = run_on_chip(of, true);
+  const std::uint64_t b_bytes = std::uint64_t{2} * 192 * 80 * 8;
+  EXPECT_EQ(in_ddr.sram_bytes_read, 0u);
+  EXPECT_EQ(on_chip.sram_bytes_read, b_bytes);
+  EXPECT_EQ(on_chip.ddr_bytes_read, in_ddr.ddr_bytes_read - b_bytes);
+  EXPECT_LT(on_chip.cycles, in_ddr.cycles);
 }
 
 TEST(DgemmExample, WorkIsAMultiplyAndAnAddForEachProduct) {

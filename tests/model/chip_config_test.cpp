@@ -133,7 +133,7 @@ std::size_t keys_of(const std::string& group) {
 // With ChangingAKeyChangesThatLineOnly below: as many keys as fields, each with a field of its own.
 TEST(ParameterTable, CoversEveryField) {
   const ChipConfig config = default_chip_config();
-  const auto& [preset, chip, poly, control, pio, clear_connect, ddr, host, energy] =
+  const auto& [preset, chip, poly, control, pio, clear_connect, ddr, on_chip_sram, host, energy] =
       config;  // a new group breaks this line
   EXPECT_EQ(preset, "csx600");
   EXPECT_EQ(keys_of("chip"), field_count<std::decay_t<decltype(chip)>>());
@@ -143,6 +143,7 @@ TEST(ParameterTable, CoversEveryField) {
   EXPECT_EQ(keys_of("pio"), field_count<std::decay_t<decltype(pio)>>());
   EXPECT_EQ(keys_of("clear_connect"), field_count<std::decay_t<decltype(clear_connect)>>());
   EXPECT_EQ(keys_of("ddr"), field_count<std::decay_t<decltype(ddr)>>());
+  EXPECT_EQ(keys_of("on_chip_sram"), field_count<std::decay_t<decltype(on_chip_sram)>>());
   EXPECT_EQ(keys_of("host"), field_count<std::decay_t<decltype(host)>>());
   EXPECT_EQ(keys_of("energy.picojoules"), cn::kInstructionClasses - 1) << "mono has no energy of its own";
   EXPECT_EQ(keys_of("energy"),

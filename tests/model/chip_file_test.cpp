@@ -28,7 +28,8 @@ TEST(EffectiveToml, RoundTripsAChipInWhichEveryParameterWasChanged) {
   config.poly.cycles.fill(1.0 / 3.0);
   config.chip.clock_hz = 210000000.00000003;
   config.control.cache_line_bytes = 8;
-  config.clear_connect = {1, 8, 3, 5};
+  config.clear_connect = {1, 8, 3, 5, 24};
+  config.on_chip_sram = {2048, std::uint64_t{1} << 50, 7, 3, 9};
   config.ddr.page_hit_cycles = 0;
   config.ddr.banks = 1;
   config.ddr.page_bytes = 64;

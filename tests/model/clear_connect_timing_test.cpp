@@ -83,4 +83,22 @@ TEST(ClearConnectTiming, NarrowPortIsTheBottleneck) {
   EXPECT_EQ(network.backward(Initiator::control, 16, 1, 1150, 1166), 1424u);  // port 1402..1418
 }
 
+TEST(ClearConnectTiming, ThePortToTheDdrMayBeNarrowerThanTheDdr) {
+  auto config = test_support::test_chip().clear_connect;
+  config.ddr_port_bytes_per_cycle = 4;
+  ClearConnectTiming network(config, 16);
+  expect_passage(network.forward(Initiator::pio, 64, 1, 100), 106, 122);  // port 106..122
+}
+
+TEST(ClearConnectTiming, PortsDoNotWaitForEachOther) {
+  auto network = test_network();
+  const model::Port other = network.add_port({32, 1});
+  network.forward(Initiator::pio, 6400, 100, 100);  // the DDR's port is taken until 906 at least
+  expect_passage(network.forward(Initiator::control, 64, 1, 100, other), 102, 110);
+  // The same initiator's link is taken until 900.
+  expect_passage(network.forward(Initiator::pio, 64, 1, 100, other), 902, 910);
+  EXPECT_EQ(network.backward(Initiator::control, 64, 1, 200, 204, other), 210u);  // link 200..208, 2 cycles
+  EXPECT_EQ(network.statistics(Initiator::control).waiting_cycles, 0u);
+}
+
 }  // namespace clear_connect_timing_test

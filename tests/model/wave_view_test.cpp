@@ -102,7 +102,7 @@ TEST(WaveView, GroupsAreClosedInTheOrderTheyWereOpened) {
   }
   EXPECT_EQ(open, "");
   EXPECT_EQ(opened, (std::vector<std::string>{"-bins", "-control unit", "-PE array", "-programmed I/O",
-                                              "-ClearConnect", "-DDR", "-host link"}));
+                                              "-ClearConnect", "-DDR", "-on-chip SRAM", "-host link"}));
 }
 
 TEST(WaveView, FiltersStandBeforeTheirSignals) {

@@ -11,9 +11,12 @@
 namespace test_support {
 
 /// Mono memory after a native run.
-inline std::vector<std::uint8_t> run_natively(const testbench::ExampleRun& run, int num_pes) {
-  testbench::NativeMachine machine(num_pes, 6144, run.mono.size());
+inline std::vector<std::uint8_t> run_natively(const testbench::ExampleRun& run, int num_pes,
+                                              const cn::MonoRange& scratchpad = {}) {
+  testbench::NativeMachine machine(num_pes, 6144, run.mono.size(), scratchpad);
   std::memcpy(machine.mono(), run.mono.data(), run.mono.size());
+  if (!run.scratchpad.empty())
+    std::memcpy(machine.scratchpad_bytes(), run.scratchpad.data(), run.scratchpad.size());
   run.firmware(machine);
   return {machine.mono(), machine.mono() + machine.mono_bytes()};
 }

@@ -13,12 +13,14 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       config_(config),
       approximately_timed_(event_queue != nullptr),
       pe_array_(pe_array),
-      time_(clock, ledger_, pio, host_traffic),
+      time_(clock, ledger_, pio, host_traffic,
+            approximately_timed_ ? TimingStyle::approximately_timed : TimingStyle::loosely_timed),
       semaphores_(semaphore_names()),
       host_semaphores_(semaphores_, time_, poly_memory()),
       threads_(config.control, ledger_, semaphores_, time_, host_semaphores_, pio),
       mono_access_(config, clock, ledger_, time_, poly_memory(), mono_socket, event_queue) {
   semaphores.bind(*this);
+  time.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &ControlUnit::forget_mono_pointer);
   if (approximately_timed_) mono_socket.register_nb_transport_bw(this, &ControlUnit::nb_transport_bw);
   SC_HAS_PROCESS(ControlUnit);

@@ -36,10 +36,11 @@ namespace model {
 ///
 /// Further hardware threads (loosely timed only) share the stream and its cycle count. What makes the control
 /// unit itself stand still, a full PIO queue or a data cache miss, stops all threads.
-class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort {
+class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort, public TimePort {
  public:
   sc_core::sc_port<PioPort> pio{"pio"};
   sc_core::sc_export<SemaphorePort> semaphores{"semaphores"};
+  sc_core::sc_export<TimePort> time{"time"};
   tlm_utils::simple_initiator_socket<ControlUnit> mono_socket{"mono_socket"};
   HostTrafficPort host_traffic{"host_traffic"};
 
@@ -69,6 +70,10 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   Cycles start_cycle() const { return ledger_.start_cycle(); }
   const ControlStatistics& statistics() const { return ledger_.statistics(); }
 
+  /// Others than this chip may use its mono memory, so the firmware must not run ahead of them
+  /// (TimeCoupling::approach).
+  void share_memory() { time_.share_memory(); }
+
   /// Reports spans to `observer`; synchronises at least every `sync_cycles` so that they can be shown in
   /// time.
   void set_observer(ControlObserver* observer, Cycles sync_cycles) {
@@ -85,6 +90,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   // SemaphorePort:
   void signal_at(int index, Cycles at) override { semaphores_.signal(index, Signaller::pio, at); }
+  // TimePort:
+  void approach(Cycles cycle) override { time_.approach(cycle); }
 
  protected:
   void retire(const char* kernel, const cn::IssueTree& issued) override;

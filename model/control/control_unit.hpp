@@ -51,7 +51,10 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   /// What runs from `start()` on.
   void load(Firmware firmware) { firmware_ = std::move(firmware); }
-  /// Called by the host: the firmware begins at the present SystemC time.
+  /// Called by the host: the firmware begins at the present SystemC time. It may be started again, or another
+  /// one loaded and started, when it has come to its end: poly buffers, semaphores, data cache and statistics
+  /// of the control unit begin anew; memories and the statistics of other units go on. Throws
+  /// std::logic_error while it runs, or after it has failed.
   void start();
   bool finished() const { return threads_.finished(); }
   const sc_core::sc_event& finished_event() const { return threads_.finished_event(); }
@@ -101,6 +104,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
  private:
   void run();
+  void begin_again();
   void report_kernel_begin(const char* kernel, const cn::IssueTree& issued);
   void report_kernel_end(const char* kernel, const cn::IssueTree& issued, Cycles start);
   void forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) { mono_access_.forget_pointer(); }
@@ -121,7 +125,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   Firmware firmware_;
   bool timed_ = true;
-  bool firmware_started_ = false;
+  bool start_asked_ = false;       ///< and the firmware has not begun yet
+  bool firmware_started_ = false;  ///< at least once
   sc_core::sc_event start_event_;
 };
 

@@ -37,6 +37,7 @@ class MonoAccess {
   /// Throws cn::MachineFault when the transfer is not within mono memory and the PEs' SRAM.
   void move_untimed(const cn::Transfer& transfer);
 
+  void empty_cache() { cache_.clear(); }
   /// The memory takes back its direct pointer.
   void forget_pointer() { window_.invalidate(); }
   /// Passes on what the socket receives; approximately timed only.

@@ -42,7 +42,7 @@ void ControlUnit::start() {
 
 void ControlUnit::run() {
   for (;;) {
-    wait(start_event_);
+    while (!start_asked_) wait(start_event_);  // it may have been started before the simulation
     if (firmware_started_) begin_again();
     start_asked_ = false;
     firmware_started_ = true;

@@ -4,11 +4,14 @@
 #include <memory>
 
 #include "firmware/path_tracer/path_tracer.hpp"
+#include "testbench/observe/observation.hpp"
 #include "testbench/run/host_pc.hpp"
 #include "testbench/run/render.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/support/vcd_reader.hpp"
 
 namespace several_chips_test {
 
@@ -58,7 +61,16 @@ class Board {
     });
   }
 
-  Outcome outcome() const {
+  void write_waves(const std::filesystem::path& file) {
+    testbench::ObservationOptions options;
+    options.waves.emplace(testbench::WaveOptions{file, {}});
+    observation_.emplace(options, *chip_);
+  }
+
+  Outcome outcome() {
+    if (observation_) {
+      EXPECT_EQ(observation_->finish(), "");
+    }
     chip_->control_unit.require_finished();
     EXPECT_TRUE(host_->finished());
     const model::PioStatistics& pio = chip_->pio_engine.statistics();
@@ -73,15 +85,19 @@ class Board {
   testbench::Film film_;
   std::unique_ptr<model::Csx600> chip_;
   std::unique_ptr<testbench::HostPc> host_;
+  std::optional<testbench::Observation> observation_;
 };
 
 class SeveralChips : public test_support::SystemCFixture, public testing::WithParamInterface<TimingStyle> {
  protected:
-  static std::vector<Outcome> run(const std::vector<Job>& jobs) {
+  /// @param waves a directory for a file of each chip; empty: none
+  static std::vector<Outcome> run(const std::vector<Job>& jobs, const std::filesystem::path& waves = {}) {
     new_context();
     std::vector<std::unique_ptr<Board>> boards;
     for (const Job& job : jobs)
       boards.push_back(std::make_unique<Board>("board" + std::to_string(boards.size()), job, GetParam()));
+    for (std::size_t i = 0; !waves.empty() && i < boards.size(); ++i)
+      boards[i]->write_waves(waves / ("chip" + std::to_string(i) + ".vcd"));
     // A day of simulated time: without a bound, chips that wait for each other would never return.
     sc_core::sc_start(sc_core::sc_time(86400, sc_core::SC_SEC), sc_core::SC_EXIT_ON_STARVATION);
     std::vector<Outcome> outcomes;
@@ -104,6 +120,21 @@ TEST_P(SeveralChips, ThreeWithWorkAndClocksOfTheirOwn) {
   expect_each_as_alone({{Program::full, {7, 5}, 210e6},
                         {Program::segments, {11, 5}, 250e6},
                         {Program::direct, {9, 4}, 210e6}});
+}
+
+TEST_P(SeveralChips, TheWavesOfEachHaveItsScope) {
+  const test_support::TemporaryDirectory directory;
+  const std::vector<Job> jobs = {{Program::full, {7, 5}, 210e6}, {Program::segments, {11, 5}, 250e6}};
+  const std::vector<Outcome> observed = run(jobs, directory.path());
+  EXPECT_EQ(observed, run(jobs));
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const std::string chip = "board" + std::to_string(i) + "_chip.";
+    const auto waves =
+        test_support::VcdReader::of_file(directory.path() / ("chip" + std::to_string(i) + ".vcd"));
+    for (const auto& signal : waves.signals()) EXPECT_EQ(signal.first.substr(0, chip.size()), chip);
+    EXPECT_GT(waves.signal(chip + "control.state").changes.size(), 100u);
+    EXPECT_NEAR(double(waves.last_time()) * jobs[i].clock_hz / 1e12, double(observed[i].host_cycles), 1e5);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Styles, SeveralChips,

@@ -133,7 +133,7 @@ TEST_P(SeveralChips, TheWavesOfEachHaveItsScope) {
         test_support::VcdReader::of_file(directory.path() / ("chip" + std::to_string(i) + ".vcd"));
     for (const auto& signal : waves.signals()) EXPECT_EQ(signal.first.substr(0, chip.size()), chip);
     EXPECT_GT(waves.signal(chip + "control.state").changes.size(), 100u);
-    EXPECT_NEAR(double(waves.last_time()) * jobs[i].clock_hz / 1e12, double(observed[i].host_cycles), 1e5);
+    EXPECT_GE(double(waves.last_time()) * jobs[i].clock_hz / 1e12 + 1, double(observed[i].host_cycles));
   }
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <tlm_utils/peq_with_get.h>
 #include <tlm_utils/simple_target_socket.h>
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <systemc>
 #include <tlm>
 #include <utility>
@@ -13,8 +15,8 @@
 namespace examples {
 
 /// A memory with one port and a socket for each initiator, as a third party would write it: b_transport,
-/// debug transport and a direct pointer; no extensions, no phases. Accesses occupy the port one after the
-/// other in the order in which they come.
+/// the four phases, debug transport and a direct pointer; no extensions. Accesses occupy the port one after
+/// the other in the order in which they come; any number may be on the way.
 class SharedMemory : public sc_core::sc_module {
  public:
   struct Access {
@@ -38,10 +40,17 @@ class SharedMemory : public sc_core::sc_module {
         latency_(latency) {
     for (int i = 0; i < initiators; ++i) {
       auto& socket = sockets[std::size_t(i)];
+      socket.register_nb_transport_fw(this, &SharedMemory::nb_transport_fw, i);
       socket.register_b_transport(this, &SharedMemory::b_transport, i);
       socket.register_transport_dbg(this, &SharedMemory::transport_dbg, i);
       socket.register_get_direct_mem_ptr(this, &SharedMemory::get_direct_mem_ptr, i);
+      responses_.push_back(std::make_unique<Responses>());
     }
+    SC_HAS_PROCESS(SharedMemory);
+    SC_METHOD(begin_responses);
+    sensitive << ended_;
+    for (const auto& responses : responses_) sensitive << responses->due.get_event();
+    dont_initialize();
   }
 
   /// Tells `observer` of each access from now on.
@@ -51,6 +60,43 @@ class SharedMemory : public sc_core::sc_module {
   const sc_core::sc_time& busy() const { return busy_; }
 
  private:
+  /// The responses to one initiator, which begin one after the other.
+  struct Responses {
+    tlm_utils::peq_with_get<tlm::tlm_generic_payload> due{sc_core::sc_gen_unique_name("responses")};
+    tlm::tlm_generic_payload* begun = nullptr;
+  };
+
+  tlm::tlm_sync_enum nb_transport_fw(int initiator, tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) {
+    Responses& responses = *responses_[std::size_t(initiator)];
+    if (phase == tlm::END_RESP) {
+      std::exchange(responses.begun, nullptr)->release();
+      ended_.notify(delay);
+      return tlm::TLM_COMPLETED;
+    }
+    if (phase != tlm::BEGIN_REQ) return tlm::TLM_ACCEPTED;
+    payload.acquire();
+    sc_core::sc_time over = delay;
+    b_transport(initiator, payload, over);
+    responses.due.notify(payload, over);
+    phase = tlm::END_REQ;
+    return tlm::TLM_UPDATED;
+  }
+
+  void begin_responses() {
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      Responses& responses = *responses_[i];
+      while (responses.begun == nullptr) {
+        responses.begun = responses.due.get_next_transaction();
+        if (responses.begun == nullptr) break;
+        tlm::tlm_phase phase = tlm::BEGIN_RESP;
+        sc_core::sc_time delay;
+        if (sockets[i]->nb_transport_bw(*responses.begun, phase, delay) == tlm::TLM_ACCEPTED) continue;
+        std::exchange(responses.begun, nullptr)->release();
+      }
+    }
+  }
+
   void b_transport(int initiator, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
     const bool moves = payload.is_read() || payload.is_write();
     if (moves && transport_dbg(initiator, payload) != payload.get_data_length()) {
@@ -98,6 +144,8 @@ class SharedMemory : public sc_core::sc_module {
   sc_core::sc_time port_free_;
   sc_core::sc_time busy_;
   Observer observer_;
+  std::vector<std::unique_ptr<Responses>> responses_;  ///< by initiator
+  sc_core::sc_event ended_;
 };
 
 }  // namespace examples

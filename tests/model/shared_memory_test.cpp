@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "model/csx600.hpp"
+#include "tests/support/protocol_checker.hpp"
 #include "tests/support/systemc_fixture.hpp"
 #include "tests/support/test_chip.hpp"
 
@@ -54,11 +55,15 @@ class SharedMemory : public test_support::SystemCFixture {
     examples::SharedMemory memory("memory", int(starts.size()), config.ddr.size_bytes, bytes_per_second,
                                   sc_time(20, sc_core::SC_NS));
     std::vector<std::unique_ptr<model::Csx600>> chips;
+    std::vector<std::unique_ptr<test_support::ProtocolChecker>> checkers;
     for (std::size_t i = 0; i < starts.size(); ++i) {
       chips.push_back(std::make_unique<model::Csx600>(("chip" + std::to_string(i)).c_str(), config, timing,
                                                       model::MonoMemory::bound_outside));
       model::Csx600& chip = *chips.back();
-      chip.clear_connect.ddr_socket.bind(memory.sockets[i]);
+      checkers.push_back(
+          std::make_unique<test_support::ProtocolChecker>(("checker" + std::to_string(i)).c_str()));
+      chip.clear_connect.ddr_socket.bind(checkers.back()->in);
+      checkers.back()->out.bind(memory.sockets[i]);
       chip.control_unit.load([i](cn::Machine& machine) { stream(machine, i * 256 * 1024); });
       sc_core::sc_spawn([&chip, start = starts[i]] {
         sc_core::wait(sc_time(start, sc_core::SC_NS));
@@ -66,6 +71,10 @@ class SharedMemory : public test_support::SystemCFixture {
       });
     }
     sc_core::sc_start(sc_time(1, sc_core::SC_SEC), sc_core::SC_EXIT_ON_STARVATION);
+    for (const auto& checker : checkers) {
+      EXPECT_EQ(checker->violations(), std::vector<std::string>{});
+      EXPECT_EQ(checker->active(), 0u);
+    }
     Outcome outcome{{}, memory.busy() / sc_core::sc_time_stamp()};
     for (const auto& chip : chips) {
       chip->control_unit.require_finished();
@@ -84,8 +93,7 @@ double difference(Cycles a, Cycles b) {
   return std::abs(double(a) / double(b) - 1);
 }
 
-/// @param bound of the difference between the styles. Approximately timed, equal chips move in step: both
-/// set up their next requests while the memory has nothing to do. Loosely timed, whole requests take turns.
+/// @param bound of the difference between loosely and approximately timed
 void SharedMemory::expect_fair_sharing(double bytes_per_second, double bound) {
   const Outcome alone = run(TimingStyle::loosely_timed, bytes_per_second, {0});
   const Outcome loose = run(TimingStyle::loosely_timed, bytes_per_second, {0, 0});
@@ -101,8 +109,8 @@ void SharedMemory::expect_fair_sharing(double bytes_per_second, double bound) {
 }
 
 TEST_F(SharedMemory, EqualChipsShareItEqually) {
-  expect_fair_sharing(kSlow, 0.04);
-  expect_fair_sharing(kMedium, 0.08);
+  expect_fair_sharing(kSlow, 0.02);
+  expect_fair_sharing(kMedium, 0.02);
 }
 
 TEST_F(SharedMemory, AFastOneHoldsUpNobody) {

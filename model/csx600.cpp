@@ -31,12 +31,17 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
   control_unit.pio.bind(pio_engine.port);
   control_unit.mono_socket.bind(clear_connect.control_socket);
   pio_engine.semaphores.bind(control_unit.semaphores);
+  pio_engine.time.bind(control_unit.time);
   pio_engine.mono_socket.bind(clear_connect.pio_socket);
   pio_engine.poly_socket.bind(poly_sram.pio_socket);
   host_link.socket.bind(clear_connect.host_socket);
   clear_connect.host_traffic.bind(host_link.traffic);
   control_unit.host_traffic.bind(host_link.traffic);
-  if (mono_ddr) clear_connect.ddr_socket.bind(mono_ddr->socket);
+  if (mono_ddr) {
+    clear_connect.ddr_socket.bind(mono_ddr->socket);
+  } else {
+    control_unit.share_memory();
+  }
   if (on_chip_sram)
     clear_connect.bind(on_chip_sram->socket, kOnChipSramRange, on_chip_sram_range(config_),
                        {config_.on_chip_sram.bytes_per_cycle, config_.on_chip_sram.hops});

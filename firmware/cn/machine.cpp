@@ -61,6 +61,12 @@ Semaphore Machine::allocate_semaphore(const std::string& name) {
   return {static_cast<int>(semaphore_names_.size()) - 1};
 }
 
+void Machine::begin_program() {
+  poly_memory_.free_all();
+  semaphore_names_.clear();
+  label_ = {};
+}
+
 void Machine::start_thread(int, const std::string& name, std::function<void()>) {
   throw MachineFault("start of thread '" + name + "': this machine has one thread");
 }

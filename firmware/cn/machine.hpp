@@ -143,6 +143,9 @@ class Machine {
   /// The PEs enabled for the kernel that retires; null for an operation of all PEs.
   const LaneMask* kernel_lanes() const { return kernel_lanes_; }
 
+  /// Frees poly buffers and semaphores: another program begins.
+  void begin_program();
+
   virtual void retire(const char* kernel, const IssueTree& issued) = 0;
   virtual void start_transfer(const Transfer& transfer) = 0;
   virtual const void* read_mono_bytes(MonoAddress from, std::size_t bytes) = 0;

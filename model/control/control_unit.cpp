@@ -1,6 +1,7 @@
 #include "model/control/control_unit.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "model/pe_array/stolen_cycles.hpp"
 
@@ -13,12 +14,14 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       config_(config),
       approximately_timed_(event_queue != nullptr),
       pe_array_(pe_array),
-      time_(clock, ledger_, pio, host_traffic),
+      time_(clock, ledger_, pio, host_traffic,
+            approximately_timed_ ? TimingStyle::approximately_timed : TimingStyle::loosely_timed),
       semaphores_(semaphore_names()),
       host_semaphores_(semaphores_, time_, poly_memory()),
       threads_(config.control, ledger_, semaphores_, time_, host_semaphores_, pio),
       mono_access_(config, clock, ledger_, time_, poly_memory(), mono_socket, event_queue) {
   semaphores.bind(*this);
+  time.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &ControlUnit::forget_mono_pointer);
   if (approximately_timed_) mono_socket.register_nb_transport_bw(this, &ControlUnit::nb_transport_bw);
   SC_HAS_PROCESS(ControlUnit);
@@ -27,16 +30,37 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
 }
 
 void ControlUnit::start() {
+  if (start_asked_ || (firmware_started_ && !finished()))
+    throw std::logic_error(std::string(name()) + ": start of firmware that has not come to its end");
+  if (threads_.failed())
+    throw std::logic_error(
+        std::string(name()) +
+        ": start after the firmware has failed; a chip that has failed must be built anew");
+  start_asked_ = true;
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
 void ControlUnit::run() {
-  wait(start_event_);
-  ledger_.start(time_.present());
-  firmware_started_ = true;
-  threads_.run_first([this] {
-    if (firmware_) firmware_(*this);
-  });
+  for (;;) {
+    while (!start_asked_) wait(start_event_);  // it may have been started before the simulation
+    if (firmware_started_) begin_again();
+    start_asked_ = false;
+    firmware_started_ = true;
+    ledger_.start(time_.present());
+    threads_.run_first([this] {
+      if (firmware_) firmware_(*this);
+    });
+  }
+}
+
+void ControlUnit::begin_again() {
+  while (pio->serve_next()) continue;  // what the firmware before has started and not waited for
+  begin_program();
+  ledger_.clear();
+  semaphores_.clear();
+  threads_.begin_again();
+  mono_access_.empty_cache();
+  timed_ = true;
 }
 
 void ControlUnit::require_finished() const {

@@ -36,10 +36,11 @@ namespace model {
 ///
 /// Further hardware threads (loosely timed only) share the stream and its cycle count. What makes the control
 /// unit itself stand still, a full PIO queue or a data cache miss, stops all threads.
-class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort {
+class ControlUnit : public sc_core::sc_module, public cn::Machine, public SemaphorePort, public TimePort {
  public:
   sc_core::sc_port<PioPort> pio{"pio"};
   sc_core::sc_export<SemaphorePort> semaphores{"semaphores"};
+  sc_core::sc_export<TimePort> time{"time"};
   tlm_utils::simple_initiator_socket<ControlUnit> mono_socket{"mono_socket"};
   HostTrafficPort host_traffic{"host_traffic"};
 
@@ -50,7 +51,10 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   /// What runs from `start()` on.
   void load(Firmware firmware) { firmware_ = std::move(firmware); }
-  /// Called by the host: the firmware begins at the present SystemC time.
+  /// Called by the host: the firmware begins at the present SystemC time. It may be started again, or another
+  /// one loaded and started, when it has come to its end: poly buffers, semaphores, data cache and statistics
+  /// of the control unit begin anew; memories and the statistics of other units go on. Throws
+  /// std::logic_error while it runs, or after it has failed.
   void start();
   bool finished() const { return threads_.finished(); }
   const sc_core::sc_event& finished_event() const { return threads_.finished_event(); }
@@ -68,6 +72,10 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   /// When the firmware began.
   Cycles start_cycle() const { return ledger_.start_cycle(); }
   const ControlStatistics& statistics() const { return ledger_.statistics(); }
+
+  /// Others than this chip may use its mono memory, so the firmware must not run ahead of them
+  /// (TimeCoupling::approach).
+  void share_memory() { time_.share_memory(); }
 
   /// Reports spans to `observer`; synchronises at least every `sync_cycles` so that they can be shown in
   /// time.
@@ -90,6 +98,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   // SemaphorePort:
   void signal_at(int index, Cycles at) override { semaphores_.signal(index, Signaller::pio, at); }
+  // TimePort:
+  void approach(Cycles cycle) override { time_.approach(cycle); }
 
  protected:
   void retire(const char* kernel, const cn::IssueTree& issued) override;
@@ -99,6 +109,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
  private:
   void run();
+  void begin_again();
   void report_kernel_begin(const char* kernel, const cn::IssueTree& issued);
   void report_kernel_end(const char* kernel, const cn::IssueTree& issued, Cycles start);
   void forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) { mono_access_.forget_pointer(); }
@@ -119,7 +130,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   Firmware firmware_;
   bool timed_ = true;
-  bool firmware_started_ = false;
+  bool start_asked_ = false;       ///< and the firmware has not begun yet
+  bool firmware_started_ = false;  ///< at least once
   sc_core::sc_event start_event_;
 };
 

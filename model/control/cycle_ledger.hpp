@@ -12,6 +12,11 @@ class CycleLedger {
  public:
   /// The firmware begins at `cycle`.
   void start(Cycles cycle) { start_cycle_ = now_ = cycle; }
+  /// No cycle has been spent.
+  void clear() {
+    statistics_ = {};
+    waits_taken_ = {};
+  }
   Cycles start_cycle() const { return start_cycle_; }
   /// The firmware's cycle, at or ahead of SystemC's time.
   Cycles now() const { return now_; }

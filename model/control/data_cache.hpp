@@ -15,6 +15,8 @@ class DataCache {
   DataCache(int bytes, int line_bytes)
       : line_bytes_(std::uint64_t(line_bytes)), tags_(std::size_t(bytes / line_bytes), kEmpty) {}
 
+  /// No line is in the cache.
+  void clear() { tags_.assign(tags_.size(), kEmpty); }
   std::uint64_t line_bytes() const { return line_bytes_; }
   std::uint64_t line_of(cn::MonoAddress address) const { return address / line_bytes_; }
 

@@ -14,7 +14,8 @@ struct ThreadStopped {};
 HardwareThreads::HardwareThreads(const ChipConfig::Control& config, CycleLedger& ledger,
                                  Semaphores& semaphores, TimeCoupling& time, const HostSemaphorePort& host,
                                  sc_core::sc_port<PioPort>& pio)
-    : switch_cycles_(Cycles(config.thread_switch_cycles)),
+    : limit_(config.threads),
+      switch_cycles_(Cycles(config.thread_switch_cycles)),
       ledger_(ledger),
       semaphores_(semaphores),
       time_(time),
@@ -27,6 +28,11 @@ HardwareThreads::HardwareThreads(const ChipConfig::Control& config, CycleLedger&
 void HardwareThreads::run_first(const std::function<void()>& body) {
   ledger_.report_thread(scheduler_.running(), ThreadState::running);
   run(body);
+}
+
+void HardwareThreads::begin_again() {
+  scheduler_ = ThreadScheduler(limit_, cn::kFirstThreadPriority);
+  finished_ = false;
 }
 
 void HardwareThreads::start(int priority, const std::string& name, std::function<void()> body) {

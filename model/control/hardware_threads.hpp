@@ -37,6 +37,9 @@ class HardwareThreads {
 
   /// All threads are over, or one has failed.
   bool finished() const { return finished_; }
+  bool failed() const { return failure_ != nullptr; }
+  /// After finished(): run_first() may be called again.
+  void begin_again();
   const sc_core::sc_event& finished_event() const { return finished_event_; }
   /// Throws what a thread threw, if one did.
   void rethrow_failure() const;
@@ -50,6 +53,7 @@ class HardwareThreads {
   void dispatch(int thread);
   void switch_to(int thread, int self);
 
+  int limit_;
   Cycles switch_cycles_;
   CycleLedger& ledger_;
   Semaphores& semaphores_;

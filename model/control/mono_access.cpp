@@ -23,6 +23,7 @@ MonoAccess::MonoAccess(const ChipConfig& config, const ClockDomain& clock, Cycle
       line_(std::size_t(config.control.cache_line_bytes)) {}
 
 const void* MonoAccess::read(cn::MonoAddress from, std::size_t bytes) {
+  time_.approach(ledger_.now());
   const void* const data = read_untimed(from, bytes);
   const std::uint64_t last = cache_.line_of(from + bytes - 1);
   for (std::uint64_t line = cache_.line_of(from); line <= last; ++line) {

@@ -39,6 +39,7 @@ class MonoAccess {
 
   /// MonoWindow::follow().
   void follow(const AddressMap& map) { window_.follow(map); }
+  void empty_cache() { cache_.clear(); }
   /// The memory takes back its direct pointer.
   void forget_pointer() { window_.invalidate(); }
   /// Passes on what the socket receives; approximately timed only.

@@ -19,6 +19,11 @@ class Semaphores {
   explicit Semaphores(const std::vector<std::string>& names) : names_(names) {}
 
   void share_with_host(cn::Semaphore semaphore) { record_.share_with_host(semaphore); }
+  /// No signal is left and none was given; the host shares what it shared.
+  void clear() {
+    file_ = {};
+    record_.clear();
+  }
   bool is_shared_with_host(int semaphore) const { return record_.is_shared_with_host(semaphore); }
 
   void signal(int semaphore, Signaller by, Cycles at) {

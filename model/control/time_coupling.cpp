@@ -1,6 +1,20 @@
 #include "model/control/time_coupling.hpp"
 
+#include <tlm>
+
 namespace model {
+
+std::optional<sc_core::sc_time> TimeCoupling::allowed_lead() const {
+  if (timing_ == TimingStyle::approximately_timed) return std::nullopt;  // it is never ahead of an access
+  const sc_core::sc_time& quantum = tlm::tlm_global_quantum::instance().get();
+  if (memory_is_shared_ || quantum != sc_core::SC_ZERO_TIME) return quantum;
+  return std::nullopt;
+}
+
+void TimeCoupling::approach(Cycles cycle) {
+  const std::optional<sc_core::sc_time> lead = allowed_lead();
+  if (lead && clock_.time_at(cycle) > sc_core::sc_time_stamp() + *lead) wait_until(cycle);
+}
 
 void TimeCoupling::settle_pio_beside_host(Cycles cycle) {
   for (auto next = pio_->next_start(); host_is_transferring() && next && *next <= cycle;

@@ -55,6 +55,12 @@ void WaitRecord::started(const cn::Transfer& transfer, Cycles at) {
   started.at = at;
 }
 
+void WaitRecord::clear() {
+  const auto shared = shared_with_host_;
+  *this = {};
+  shared_with_host_ = shared;
+}
+
 bool WaitRecord::has_host() const {
   return std::find(shared_with_host_.begin(), shared_with_host_.end(), true) != shared_with_host_.end();
 }

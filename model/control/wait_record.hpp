@@ -31,6 +31,8 @@ class WaitRecord {
     last_kernel_ = name;
     last_kernel_cycle_ = at;
   }
+  /// Forgets all but who shares what.
+  void clear();
   /// From now on the host is one of those who may signal or wait.
   void share_with_host(cn::Semaphore semaphore) { shared_with_host_.at(std::size_t(semaphore.index)) = true; }
 

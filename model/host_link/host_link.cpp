@@ -34,7 +34,7 @@ Cycles HostLink::download(cn::MonoAddress from, void* to, std::uint64_t bytes, C
 
 Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, unsigned char* data,
                           std::uint64_t bytes, Cycles now) {
-  const Cycles start = std::max(now, free_);
+  const Cycles start = std::max(now, *link_free_);
   const bool upload = command == tlm::TLM_WRITE_COMMAND;
   if (observer_ != nullptr) observer_->began_transfer(upload, bytes, start);
   Cycles end = start;
@@ -47,6 +47,7 @@ Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, uns
     ++statistics_.transfers;
     done += dma_bytes;
   }
+  *link_free_ = end;
   HostPackets packets(timing_, command, address, bytes, start);
   if (event_queue_ != nullptr) {
     end = wait_for_packets(packets, end);
@@ -56,7 +57,8 @@ Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, uns
   statistics_.busy_cycles += end - start;
   if (observer_ != nullptr) observer_->ended_transfer(upload, bytes, start, end);
   free_at_ = clock_.time_at(end);
-  return free_ = end;
+  *link_free_ = std::max(*link_free_, end);
+  return end;
 }
 
 bool HostLink::move(tlm::tlm_command command, cn::MonoAddress address, unsigned char* data,

@@ -35,6 +35,10 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
 
   HostLink(const sc_core::sc_module_name& name, const ChipConfig& config, EventQueue* event_queue = nullptr);
 
+  /// Several chips of one clock behind one link, as on the board: from now on transfers of this and of
+  /// `other` take turns on it, in the order of the calls. To be called before the run.
+  void share_link_of(const HostLink& other) { link_free_ = other.link_free_; }
+
   /// Returns the cycle at which the last byte is there; the caller waits. Throws std::out_of_range when mono
   /// memory does not take all bytes.
   Cycles upload(cn::MonoAddress to, const void* from, std::uint64_t bytes, Cycles now);
@@ -63,8 +67,8 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
 
   ClockDomain clock_;
   HostLinkTiming timing_;
-  Cycles free_ = 0;
-  sc_core::sc_time free_at_;  ///< free_ as SystemC time
+  std::shared_ptr<Cycles> link_free_ = std::make_shared<Cycles>(0);  ///< of all chips behind the link
+  sc_core::sc_time free_at_;  ///< when the latest transfer of this chip is over
   PayloadPool pool_;
   std::vector<HostPackets> unbooked_;  ///< transfers whose packets are not all booked yet, in order
 

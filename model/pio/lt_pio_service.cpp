@@ -12,11 +12,13 @@ std::size_t remembered_requests(int queue_depth) {
 }  // namespace
 
 LtPioService::LtPioService(const ClockDomain& clock, int queue_depth, const PioTiming& timing,
-                           PioRequests& requests, PioTransactions& transactions)
+                           PioRequests& requests, PioTransactions& transactions,
+                           std::function<void(Cycles)> approach)
     : PioService(requests),
       clock_(clock),
       timing_(timing),
       transactions_(transactions),
+      approach_(std::move(approach)),
       history_(std::size_t(requests.engines()), WordHistory(remembered_requests(queue_depth))) {}
 
 bool LtPioService::serve_next() {
@@ -43,6 +45,7 @@ Cycles LtPioService::make_room() {
 }
 
 void LtPioService::start(const PioQueue::Start& next) {
+  approach_(next.cycle);
   PioRequest& request = requests_.request_of(next);
   const MonoPieces& pieces = request.addresses.pieces;
   const Cycles data_start = next.cycle + timing_.setup_cycles();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "model/pio/pio_service.hpp"
@@ -13,8 +14,9 @@ namespace model {
 /// to t, since TLM-2.0 delays cannot point to the past.
 class LtPioService : public PioService {
  public:
+  /// @param approach called with each request's start before its time is booked
   LtPioService(const ClockDomain& clock, int queue_depth, const PioTiming& timing, PioRequests& requests,
-               PioTransactions& transactions);
+               PioTransactions& transactions, std::function<void(Cycles)> approach);
 
   void settle(Cycles now) override { start_due(now); }
   bool serve_next() override;
@@ -29,6 +31,7 @@ class LtPioService : public PioService {
   ClockDomain clock_;
   const PioTiming& timing_;
   PioTransactions& transactions_;
+  std::function<void(Cycles)> approach_;
   std::vector<WordHistory> history_;  ///< by engine
 };
 

@@ -30,8 +30,10 @@ PioEngine::PioEngine(const sc_core::sc_module_name& name, const ChipConfig& conf
   port.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &PioEngine::forget_mono_pointer);
   if (event_queue == nullptr) {
-    service_ =
-        std::make_unique<LtPioService>(clock, config.pio.queue_depth, timing_, requests_, transactions_);
+    service_ = std::make_unique<LtPioService>(clock, config.pio.queue_depth, timing_, requests_,
+                                              transactions_, [this](Cycles cycle) {
+                                                if (time.size() > 0) time->approach(cycle);
+                                              });
   } else {
     auto service = std::make_unique<AtPioService>(*event_queue, mono_socket, config, timing_, mono_,
                                                   requests_, transactions_);

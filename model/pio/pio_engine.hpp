@@ -32,6 +32,8 @@ class PioEngine : public sc_core::sc_module, public PioPort {
  public:
   sc_core::sc_export<PioPort> port{"port"};
   sc_core::sc_port<SemaphorePort> semaphores{"semaphores"};
+  /// May stay unbound if no other initiator uses the memory.
+  sc_core::sc_port<TimePort, 1, sc_core::SC_ZERO_OR_MORE_BOUND> time{"time"};
   tlm_utils::simple_initiator_socket<PioEngine> mono_socket{"mono_socket"};
   tlm_utils::simple_initiator_socket<PioEngine> poly_socket{"poly_socket"};
 

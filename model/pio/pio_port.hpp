@@ -37,4 +37,11 @@ class SemaphorePort : public virtual sc_core::sc_interface {
   virtual void signal_at(int index, Cycles at) = 0;
 };
 
+/// SystemC time as the engine asks for it, loosely timed: the process that drives the engine lets it pass.
+class TimePort : public virtual sc_core::sc_interface {
+ public:
+  /// To be called before `cycle` is booked on what other initiators may book, too.
+  virtual void approach(Cycles cycle) = 0;
+};
+
 }  // namespace model

@@ -13,6 +13,18 @@ EventQueue::EventQueue(const sc_core::sc_module_name& name, const ClockDomain& c
   sensitive << wake_;
   dont_initialize();
   for (std::vector<Task>& tasks : near_) tasks.reserve(kUsualTasks);
+  join_other_chips(sc_core::sc_get_top_level_objects());
+  if (!last_in_time_) last_in_time_ = std::make_shared<LastInTime>();
+  place_ = last_in_time_->join();
+}
+
+void EventQueue::join_other_chips(const std::vector<sc_core::sc_object*>& objects) {
+  for (sc_core::sc_object* const object : objects) {
+    if (const auto* const other = dynamic_cast<const EventQueue*>(object); other != nullptr && other != this)
+      last_in_time_ = other->last_in_time_;
+    if (last_in_time_) return;
+    join_other_chips(object->get_child_objects());
+  }
 }
 
 Cycles EventQueue::cycle_after(const sc_core::sc_time& delay) const {
@@ -94,16 +106,12 @@ void EventQueue::do_tasks_of(Cycles cycle) {
 void EventQueue::pass_time_until(Cycles cycle) {
   const sc_core::sc_time delay = delay_until(cycle);
   if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
-  come_last();
+  last_in_time_->come_last(place_);
 }
 
 void EventQueue::pass_time_until(const sc_core::sc_event& event) {
   sc_core::wait(event);
-  come_last();
-}
-
-void EventQueue::come_last() {
-  while (sc_core::sc_pending_activity_at_current_time()) sc_core::wait(sc_core::SC_ZERO_TIME);
+  last_in_time_->come_last(place_);
 }
 
 }  // namespace model

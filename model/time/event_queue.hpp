@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <systemc>
 #include <vector>
 
 #include "model/time/clock_domain.hpp"
+#include "model/time/last_in_time.hpp"
 
 namespace model {
 
@@ -28,7 +30,8 @@ class EventQueue : public sc_core::sc_module {
   sc_core::sc_time delay_until(Cycles cycle) const;
 
   /// For the one process that runs firmware: waits until `cycle`, or for `event`, and then until everything
-  /// else that happens at that time has happened, so that the firmware always comes last in a cycle.
+  /// else that happens at that time has happened, so that the firmware always comes last in a cycle. The
+  /// firmware of several chips in a simulation comes last chip by chip (LastInTime).
   void pass_time_until(Cycles cycle);
   void pass_time_until(const sc_core::sc_event& event);
 
@@ -46,12 +49,13 @@ class EventQueue : public sc_core::sc_module {
     return a.cycle != b.cycle ? a.cycle > b.cycle : a.number > b.number;
   }
 
+  /// Shares `last_in_time_` with the other event queues, which it finds among SystemC's objects.
+  void join_other_chips(const std::vector<sc_core::sc_object*>& objects);
   void run();
   /// The next cycle that has tasks; there must be one.
   Cycles next_cycle() const;
   Cycles next_near_cycle() const;
   void do_tasks_of(Cycles cycle);
-  static void come_last();
 
   ClockDomain clock_;
   Cycles first_ = 0;  ///< earlier cycles have no tasks left
@@ -62,6 +66,8 @@ class EventQueue : public sc_core::sc_module {
   std::uint64_t asked_ = 0;
   bool running_ = false;
   sc_core::sc_event wake_;
+  std::shared_ptr<LastInTime> last_in_time_;  ///< of all event queues in the simulation
+  std::size_t place_ = 0;                     ///< of this chip's firmware there
 };
 
 }  // namespace model

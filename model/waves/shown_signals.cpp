@@ -66,10 +66,10 @@ bool ShownSignals::any_of_memory_counters() const {
                      [](const WaveInstance& signal) { return is_memory_counter(signal.info->id); });
 }
 
-std::vector<WaveRecorder::Signal> ShownSignals::to_record() const {
+std::vector<WaveRecorder::Signal> ShownSignals::to_record(const std::string& chip) const {
   std::vector<WaveRecorder::Signal> recorded;
   for (const WaveInstance& signal : signals_)
-    recorded.push_back({{wave_name_in_file(signal), signal.info->width},
+    recorded.push_back({{wave_name_in_file(chip, signal), signal.info->width},
                         initial_value(signal.info->id),
                         rule_of(signal.info->id)});
   return recorded;

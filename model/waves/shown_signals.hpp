@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "model/config/chip_config.hpp"
@@ -30,7 +31,7 @@ class ShownSignals {
   bool any_of_pes() const { return any(WaveSignal::pe_enabled) || any(WaveSignal::pe_transfer); }
 
   /// What the recorder has to know: name, initial value and how changes combine.
-  std::vector<WaveRecorder::Signal> to_record() const;
+  std::vector<WaveRecorder::Signal> to_record(const std::string& chip) const;
 
  private:
   std::vector<WaveInstance> signals_;

@@ -24,6 +24,8 @@ struct BlockWindow {
 };
 
 struct WaveConfig {
+  std::string chip =
+      "csx600";  ///< root scope of the file: the chip's name, so that those of two can be told apart
   WaveSelection selection;
   /// What is recorded: the whole run when there is neither kind of window.
   std::vector<CycleWindow> windows;

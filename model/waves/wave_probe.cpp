@@ -33,7 +33,7 @@ WaveProbe::WaveProbe(const sc_core::sc_module_name& name, const WaveConfig& conf
       clock_(chip.chip.clock_hz),
       memory_(std::move(memory)),
       signals_((check_waves(config, chip), ShownSignals(chip, config.selection))),
-      recorder_(std::move(sink), signals_.to_record(), clock_,
+      recorder_(std::move(sink), signals_.to_record(config.chip), clock_,
                 // Banks have a stream each, which costs time at every cycle.
                 std::size_t(first_bank_stream) +
                     (signals_.any_of_banks() ? std::size_t(chip.ddr.banks) : std::size_t(0))),

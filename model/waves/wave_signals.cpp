@@ -244,8 +244,8 @@ std::vector<WaveInstance> wave_instances(const ChipConfig& config) {
   return instances;
 }
 
-std::string wave_name_in_file(const WaveInstance& signal) {
-  return "csx600." + signal.path;
+std::string wave_name_in_file(const std::string& chip, const WaveInstance& signal) {
+  return chip + "." + signal.path;
 }
 
 std::string wave_signal_markdown() {

@@ -112,8 +112,8 @@ struct WaveInstance {
 /// Every signal that a chip has, in the order of the table.
 std::vector<WaveInstance> wave_instances(const ChipConfig& config);
 
-/// The path under the root scope of the files.
-std::string wave_name_in_file(const WaveInstance& signal);
+/// The path in a file whose root scope is the chip's name.
+std::string wave_name_in_file(const std::string& chip, const WaveInstance& signal);
 
 /// How many instances a chip has of a kind.
 int wave_count(const ChipConfig& config, WaveCount count);

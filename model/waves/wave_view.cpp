@@ -83,8 +83,8 @@ std::string short_name(const WaveInstance& signal) {
   return name;
 }
 
-std::string name_in_view(const WaveInstance& signal) {
-  const std::string name = wave_name_in_file(signal);
+std::string name_in_view(const std::string& chip, const WaveInstance& signal) {
+  const std::string name = wave_name_in_file(chip, signal);
   return signal.info->width == 1 ? name : name + "[" + std::to_string(signal.info->width - 1) + ":0]";
 }
 
@@ -96,7 +96,7 @@ void write_signal(std::ostream& out, const WaveInstance& signal, const ViewOptio
   out << "@" << std::hex << (flags_of(info.form) | (filtered ? kFileFilter : 0u)) << std::dec << "\n";
   out << "[color] " << colour(info.topic) << "\n";
   if (filtered) out << "^" << filter - options.filter_files.begin() + 1 << " " << filter->second << "\n";
-  out << "+{" << short_name(signal) << "} " << name_in_view(signal) << "\n";
+  out << "+{" << short_name(signal) << "} " << name_in_view(options.chip, signal) << "\n";
   if (info.form != WaveForm::plot) return;
   out << "@" << std::hex << kAnalogStretch << std::dec << "\n";
   for (int row = 1; row < kPlotRows; ++row) out << "-\n";

@@ -14,9 +14,10 @@ namespace model {
 struct ViewOptions {
   std::string view_file;  ///< the view's own name, by which GTKWave finds the other files from any directory
   std::string wave_file;  ///< VCD or FST
-  std::vector<WaveInstance> signals;                             ///< signals of the file, in its order
-  std::uint64_t first_picoseconds = 0;                           ///< time at the left edge
-  std::uint64_t span_picoseconds = 1;                            ///< time from edge to edge
+  std::string chip = "csx600";          ///< root scope of the file (WaveConfig::chip)
+  std::vector<WaveInstance> signals;    ///< signals of the file, in its order
+  std::uint64_t first_picoseconds = 0;  ///< time at the left edge
+  std::uint64_t span_picoseconds = 1;   ///< time from edge to edge
   std::vector<std::pair<WaveSignal, std::string>> filter_files;  ///< value names of these signals
 };
 

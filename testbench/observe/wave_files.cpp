@@ -70,10 +70,12 @@ void require_writable_waves(const WaveOptions& options, const model::ChipConfig&
 
 WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
     : chip_(chip), file_(options.file), stream_(make_wave_stream(options.file)) {
+  model::WaveConfig config = options.config;
+  config.chip = chip.name();
   try {
     probe_ = std::make_unique<model::WaveProbe>(
-        "wave_probe", options.config, chip.config(), [this](std::string_view text) { stream_->write(text); },
-        [&chip] { return memory_counters(chip); });
+        sc_core::sc_gen_unique_name("wave_probe"), config, chip.config(),
+        [this](std::string_view text) { stream_->write(text); }, [&chip] { return memory_counters(chip); });
   } catch (const model::WaveError& error) {
     throw InputError(error.what());
   }
@@ -128,6 +130,7 @@ void WaveFiles::set_span(model::ViewOptions& view) const {
 void WaveFiles::write_view() const {
   model::ViewOptions view;
   view.view_file = sibling(file_, ".gtkw").filename().string();
+  view.chip = chip_.name();
   view.wave_file = file_.filename().string();
   view.signals = probe_->signals();
   set_span(view);

@@ -1,5 +1,6 @@
 #include "testbench/run/render.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 
@@ -196,6 +197,82 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
 void search_natively(RenderOptions& options) {
   options.searches_natively = true;
   options.program.traversal = path_tracer::Traversal::brute_force;
+}
+
+namespace {
+
+/// One of the chips of a board, with its share of the samples.
+class BoardChip {
+ public:
+  BoardChip(const std::string& name, const Scene& scene, const RenderOptions& share)
+      : options_(share),
+        run_(scene, options_, no_progress_),
+        chip_(name.c_str(), options_.chip, options_.timing),
+        host_((name + "_host").c_str(), chip_, run_.image(), run_.result().film) {
+    host_.report_reads_to(
+        run_.check_hazards(chip_.control_unit, [this] { return chip_.control_unit.now(); }));
+    chip_.control_unit.load([this](cn::Machine& machine) { run_.firmware(machine); });
+  }
+  model::Csx600& chip() { return chip_; }
+
+  RenderResult finish() {
+    chip_.control_unit.require_finished();
+    if (!host_.finished()) throw RunError("the firmware has ended, but the host has not");
+    run_.result().chip = collect_statistics(chip_, host_.finished_cycle());
+    return run_.finish();
+  }
+
+ private:
+  RenderOptions options_;
+  RenderProgress no_progress_;
+  Run run_;
+  model::Csx600 chip_;
+  HostPc host_;
+};
+
+RenderOptions share_of(const RenderOptions& options, int chip, int chips) {
+  const auto first_of = [&](int i) { return int(std::int64_t(options.work.samples) * i / chips); };
+  RenderOptions share = options;
+  share.work.first_sample += first_of(chip);
+  share.work.samples = first_of(chip + 1) - first_of(chip);
+  return share;
+}
+
+void check_board(const RenderOptions& options, int chips) {
+  if (chips < 1) throw InputError("board: found " + std::to_string(chips) + " chips; allowed: 1 or more");
+  if (!options.camera_samples.empty())
+    throw InputError("board: found a list of samples; allowed: the same number for every pixel");
+  if (options.work.samples < chips)
+    throw InputError("board: found " + std::to_string(options.work.samples) + " samples a pixel for " +
+                     std::to_string(chips) + " chips; allowed: at least one a chip");
+}
+
+}  // namespace
+
+BoardRender render_on_board(const Scene& scene, const RenderOptions& options, int chips) {
+  check_board(options, chips);
+  return with_input_errors([&] {
+    std::vector<std::unique_ptr<BoardChip>> board;
+    for (int i = 0; i < chips; ++i) {
+      board.push_back(
+          std::make_unique<BoardChip>("csx600_" + std::to_string(i), scene, share_of(options, i, chips)));
+      board.back()->chip().host_link.share_link_of(board.front()->chip().host_link);
+    }
+    sc_core::sc_start();
+    BoardRender render{Film(scene.film, film_scale(scene), options.film_sums), 0, 0, {}};
+    model::Cycles start = board.front()->chip().control_unit.start_cycle();
+    model::Cycles end = 0;
+    for (const auto& one : board) {
+      const RenderResult result = one->finish();
+      render.film.merge(result.film);
+      render.segments += result.counts.segments;
+      render.chips.push_back(*result.chip);
+      start = std::min(start, one->chip().control_unit.start_cycle());
+      end = std::max(end, one->chip().control_unit.now());
+    }
+    render.firmware_cycles = end - start;
+    return render;
+  });
 }
 
 RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress,

@@ -53,6 +53,22 @@ struct RenderResult {
 /// Takes the share of camera paths issued; returns false to interrupt the run.
 using RenderProgress = std::function<bool(double share)>;
 
+/// A render on several chips of one board.
+struct BoardRender {
+  Film film;
+  std::uint64_t segments = 0;
+  model::Cycles firmware_cycles = 0;  ///< from the first firmware's start to the last one's end
+  std::vector<ChipStatistics> chips;
+
+  double seconds() const { return double(firmware_cycles) / chips.front().config.chip.clock_hz; }
+};
+
+/// The firmware on each of `chips` SystemC models with a DDR of its own, behind one host link: the samples of
+/// every pixel are divided among them, and the film is that of one chip. Chips of a board do not talk to each
+/// other, so the ClearConnect bridge between them is not modelled. Observes nothing. At most one a process.
+/// Throws InputError when there are fewer samples than chips, or a list of them.
+BoardRender render_on_board(const Scene& scene, const RenderOptions& options, int chips);
+
 /// The firmware on the SystemC model. At most one a process, as SystemC elaborates once.
 /// Throws InputError for what does not fit the chip, RunError for a run that failed or was interrupted.
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,

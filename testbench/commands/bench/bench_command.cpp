@@ -9,6 +9,7 @@ void add_bench_command(CLI::App& app) {
   command.require_subcommand(1);
   add_bench_speed_command(command);
   add_bench_timing_command(command);
+  add_bench_board_command(command);
   add_bench_reference_command(command);
   add_bench_error_command(command);
   add_bench_skips_command(command);

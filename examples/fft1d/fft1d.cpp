@@ -84,12 +84,15 @@ class Fft1d : public plug_in::Firmware {
   void load_factors(const Chip& on) const;
   void load(const Chip& on, int batch) const;
   void save(const Chip& on, int batch) const;
+  void exchange_numbers(const Chip& on, int batch) const;
   void transform(const Chip& on, int batch) const;
   void run_with_copies(const Chip& on) const;
   void run_without_copies(const Chip& on) const;
 
   plug_in::Option<int> batches_{*this, "batches", 24, {1, 10000}, "batches of one transform for every 8 PEs"};
   plug_in::Option<int> copies_{*this, "copies", 1, {0, 1}, "0: copies from and to mono memory take no time"};
+  plug_in::Option<int> pieces_{
+      *this, "pieces", 1, {1, kGroup}, "1 or 8 pieces in which a PE loads its numbers"};
   plug_in::MonoBuffer<Complex> input_{*this, "input", plug_in::Use::upload};
   plug_in::MonoBuffer<Complex> twiddles_{*this, "twiddles", plug_in::Use::upload};
   plug_in::MonoBuffer<Complex> factors_{*this, "factors", plug_in::Use::upload};
@@ -99,6 +102,8 @@ class Fft1d : public plug_in::Firmware {
 void Fft1d::prepare(int num_pes) {
   if (num_pes % kGroup != 0)
     throw plug_in::OptionError("found " + std::to_string(num_pes) + " PEs, allowed is a multiple of 8");
+  if (pieces_ != 1 && pieces_ != kGroup)
+    throw plug_in::OptionError("pieces: found " + std::to_string(pieces_) + ", allowed is 1 or 8");
   input_.resize(std::size_t(batches_) * std::size_t(num_pes) * kOfPe);
   output_.resize(input_.size());
   for (std::size_t i = 0; i < input_.size(); ++i) input_[i] = {input_of(2 * i), input_of(2 * i + 1)};
@@ -130,14 +135,24 @@ void Fft1d::load_factors(const Chip& on) const {
   on.machine.sem_wait(on.loaded);
 }
 
-/// One request for each r; each signals.
+/// One request for each piece; each signals.
 void Fft1d::load(const Chip& on, int batch) const {
   const cn::MonoAddress first = input_.mono().address + batch_bytes(on, batch);
-  for (int r = 0; r < kGroup; ++r) {
-    const cn::PolySpan piece{on.data[batch % kBuffers].offset_bytes + r * kRunBytes, kRunBytes};
-    on.machine.async_copy_m2p(on.loaded, piece,
+  const cn::PolySpan data = on.data[batch % kBuffers];
+  if (pieces_ == 1)
+    on.machine.async_copy_m2p(on.loaded, data, cn::MonoPlaces::array(first, kPieceBytes), on.all);
+  for (int r = 0; r < pieces_ && pieces_ > 1; ++r)
+    on.machine.async_copy_m2p(on.loaded, {data.offset_bytes + r * kRunBytes, kRunBytes},
                               on.machine.places_in(on.places.input, first + std::uint64_t(r) * kPieceBytes),
                               on.all);
+}
+
+void Fft1d::exchange_numbers(const Chip& on, int batch) const {
+  for (int bit = 0; bit < kGroupBits; ++bit) {
+    const ExchangeArguments arguments{cn::PolyArray<std::uint64_t>(on.data[batch % kBuffers]),
+                                      cn::PolyArray<std::uint64_t>(on.scratch), bit};
+    on.machine.run(cn::kernel<ExchangeArguments, exchange>("exchange"), arguments, on.all);
+    on.machine.run(cn::kernel<ExchangeArguments, exchange_store>("exchange_store"), arguments, on.all);
   }
 }
 
@@ -153,12 +168,9 @@ void Fft1d::transform(const Chip& on, int batch) const {
   const auto run_stages = [&](int last_span) {
     on.machine.run(cn::kernel<StageArguments, stages>("stages"), {data, twiddles, last_span}, on.all);
   };
+  if (pieces_ == 1) exchange_numbers(on, batch);
   run_stages(kRun);
-  for (int bit = 0; bit < kGroupBits; ++bit) {
-    const ExchangeArguments arguments{data, cn::PolyArray<std::uint64_t>(on.scratch), bit};
-    on.machine.run(cn::kernel<ExchangeArguments, exchange>("exchange"), arguments, on.all);
-    on.machine.run(cn::kernel<ExchangeArguments, exchange_store>("exchange_store"), arguments, on.all);
-  }
+  exchange_numbers(on, batch);
   on.machine.run(cn::kernel<TurnArguments, turn>("turn"), {data, cn::PolyArray<std::uint64_t>(on.factors)},
                  on.all);
   run_stages(1);
@@ -168,7 +180,7 @@ void Fft1d::transform(const Chip& on, int batch) const {
 void Fft1d::run_with_copies(const Chip& on) const {
   load(on, 0);
   for (int batch = 0; batch < batches_; ++batch) {
-    for (int r = 0; r < kGroup; ++r) on.machine.sem_wait(on.loaded);
+    for (int piece = 0; piece < pieces_; ++piece) on.machine.sem_wait(on.loaded);
     if (batch >= kBuffers - 1) on.machine.sem_wait(on.saved);
     if (batch + 1 < batches_) load(on, batch + 1);
     transform(on, batch);
@@ -183,7 +195,7 @@ void Fft1d::run_without_copies(const Chip& on) const {
     {
       const cn::Untimed untimed(on.machine);
       load(on, batch);
-      for (int r = 0; r < kGroup; ++r) on.machine.sem_wait(on.loaded);
+      for (int piece = 0; piece < pieces_; ++piece) on.machine.sem_wait(on.loaded);
     }
     transform(on, batch);
     const cn::Untimed untimed(on.machine);

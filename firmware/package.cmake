@@ -24,3 +24,25 @@ configure_package_config_file(firmware/csx600Config.cmake.in ${PROJECT_BINARY_DI
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/csx600ConfigVersion.cmake COMPATIBILITY ExactVersion)
 install(FILES ${PROJECT_BINARY_DIR}/csx600Config.cmake ${PROJECT_BINARY_DIR}/csx600ConfigVersion.cmake
   firmware/kernels.cmake firmware/add_firmware.cmake firmware/plug_in.map DESTINATION ${package} COMPONENT development)
+
+# Two Debian packages, `cpack --config build/release/CPackConfig.cmake`: the program; headers, library and CMake package.
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_PACKAGE_CONTACT "csx600 contributors")
+set(CPACK_PACKAGE_VENDOR csx600)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Model of the ClearSpeed CSX600 that runs firmware")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME csx600)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME csx600-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "csx600 (= ${PROJECT_VERSION}), g++ (>= 4:12), cmake (>= 3.25), pkg-config, binutils, libsleef-dev")
+include(CPack)

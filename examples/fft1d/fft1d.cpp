@@ -64,7 +64,7 @@ class Fft1d : public plug_in::Firmware {
   void prepare(int num_pes) override;
   void run(cn::Machine& machine) override;
   void check() const override;
-  plug_in::Work work() const override { return {double(input_.size() / kSize), "transforms"}; }
+  plug_in::Work work() const override { return {double(input_.size()) / kSize, "transforms"}; }
 
  private:
   struct Chip {
@@ -221,7 +221,7 @@ void Fft1d::check() const {
       const std::complex<double> found{output_[first + i].real, output_[first + i].imaginary};
       const std::size_t k = bit_reversed(i, 10);
       if (!(std::abs(found - numbers[k]) <= kTolerance))
-        throw plug_in::CheckFailed("fft1d: output " + std::to_string(k) + " of transform " +
+        throw plug_in::CheckFailed("output " + std::to_string(k) + " of transform " +
                                    std::to_string(first / kSize) + " is off by " +
                                    std::to_string(std::abs(found - numbers[k])));
     }

@@ -54,6 +54,10 @@ class MonoBuffer : public MonoBufferBase {
   const T& operator[](std::size_t index) const { return host_[index]; }
 
   cn::MonoPointer<T> mono() const { return {address()}; }
+  /// Where each PE's piece of a copy lies: side by side, `elements` for each PE, from element `first` on.
+  cn::MonoPlaces places(std::size_t first, std::size_t elements) const {
+    return cn::MonoPlaces::array((mono() + first).address, elements * sizeof(T));
+  }
 
   void* host_bytes() override { return host_.data(); }
   std::uint64_t size_bytes() const override { return host_.size() * sizeof(T); }

@@ -42,7 +42,7 @@ auto with_plug_in_errors(const Firmware& firmware, Work&& work) {
     const std::string map = error.map().substr(0, error.map().find_last_not_of('\n') + 1);
     throw InputError(std::string(error.what()) + "; buffers of a PE:", map);
   } catch (const plug_in::CheckFailed& error) {
-    throw RunError(error.what());
+    throw RunError(firmware.name() + ": " + error.what());
   } catch (const cn::MachineFault& fault) {
     throw RunError(fault.what());
   }

@@ -43,7 +43,7 @@ class Faults : public plug_in::Firmware {
   void check() const override {
     for (std::size_t i = 0; i < numbers_.size(); ++i)
       if (numbers_[i] != (fault_ == kWrongResult ? 3.0 : 2.0) * double(i))
-        throw plug_in::CheckFailed("faults: number " + std::to_string(i) + " is wrong");
+        throw plug_in::CheckFailed("number " + std::to_string(i) + " is wrong");
   }
 
  private:

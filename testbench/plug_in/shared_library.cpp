@@ -86,11 +86,13 @@ void set_options(plug_in::Firmware& firmware, const std::vector<std::string>& wo
     const std::size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
     plug_in::OptionBase& option = find_option(firmware, word, name);
-    const std::string allowed = ", allowed is " + option.allowed_text();
-    if (equals == std::string::npos && i + 1 == words.size())
-      throw InputError(name + ": found no value" + allowed);
+    const auto refuse = [&](std::string found) {
+      found += ", allowed is " + option.allowed_text();
+      throw InputError(name + ": found " + found);
+    };
+    if (equals == std::string::npos && i + 1 == words.size()) refuse("no value");
     const std::string value = equals == std::string::npos ? words[++i] : word.substr(equals + 1);
-    if (!option.set(value)) throw InputError(name + ": found '" + value + "'" + allowed);
+    if (!option.set(value)) refuse("'" + value + "'");
   }
 }
 

@@ -86,9 +86,10 @@ void set_options(plug_in::Firmware& firmware, const std::vector<std::string>& wo
     const std::size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
     plug_in::OptionBase& option = find_option(firmware, word, name);
-    const auto refuse = [&](std::string found) {
-      found += ", allowed is " + option.allowed_text();
-      throw InputError(name + ": found " + found);
+    const auto refuse = [&](const std::string& found) {
+      std::string message = name + ": found ";
+      message += found + ", allowed is " + option.allowed_text();
+      throw InputError(message);
     };
     if (equals == std::string::npos && i + 1 == words.size()) refuse("no value");
     const std::string value = equals == std::string::npos ? words[++i] : word.substr(equals + 1);

@@ -18,6 +18,7 @@ namespace {
 
 void add_commands(CLI::App& app) {
   testbench::add_render_command(app);
+  testbench::add_run_command(app);
   testbench::add_reproduce_command(app);
   testbench::add_calibrate_command(app);
   testbench::add_params_command(app);

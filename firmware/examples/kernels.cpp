@@ -1,4 +1,4 @@
-// Built once for each x86-64 level; EXAMPLES_KERNELS is the level's name for the table.
+// Built once for each x86-64 level, whose name is the namespace of the table.
 
 #include "firmware/examples/kernels.hpp"
 
@@ -8,7 +8,9 @@
 #include "firmware/examples/stream_kernel.hpp"
 
 namespace examples {
-const Kernels& EXAMPLES_KERNELS() {
+inline namespace CN_LEVEL {
+
+const Kernels& kernel_table() {
   static constexpr Kernels table{
       cn::kernel<MultiplyTilesArguments, multiply_tiles>("multiply_tiles"),
       cn::kernel<SeedRandomArguments, seed_random>("seed_random"),
@@ -25,4 +27,5 @@ const Kernels& EXAMPLES_KERNELS() {
   return table;
 }
 
+}  // namespace CN_LEVEL
 }  // namespace examples

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,6 +55,10 @@ class LevelOption {
   void add_to(CLI::App& command);
   /// Throws InputError for a level that this machine cannot execute.
   cn::Level level() const;
+  /// The level that was asked for; none for auto.
+  std::optional<cn::Level> given() const {
+    return choice_ == kWidest ? std::nullopt : std::optional(static_cast<cn::Level>(choice_));
+  }
 
  private:
   using Choice = int;  ///< a level, or kWidest

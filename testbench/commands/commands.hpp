@@ -7,6 +7,7 @@ namespace testbench {
 /// Each adds one subcommand to the command line; its work runs from the subcommand's callback and throws
 /// InputError or RunError.
 void add_render_command(CLI::App& app);
+void add_run_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_params_command(CLI::App& app);

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "firmware/path_tracer/program/program_options.hpp"
-#include "model/config/chip_parameters.hpp"
 #include "testbench/paper/paper.hpp"
 #include "testbench/run/energy.hpp"
 #include "testbench/run/timing_name.hpp"
+#include "testbench/statistics/chip_config_json.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/roofline.hpp"
@@ -31,25 +31,6 @@ Json firmware_json(const RenderOptions& options) {
   for (const path_tracer::ProgramOption& option : path_tracer::program_options())
     json[option.name] = value_json(option.read(options.program));
   json["samples"] = options.work.samples;
-  return json;
-}
-
-/// A real number without a fraction is written as chip files write it, without a point.
-Json value_json(const model::ParameterValue& value) {
-  constexpr double kExactIntegers = 0x1p53;
-  if (const double* const real = std::get_if<double>(&value))
-    if (*real == std::floor(*real) && std::abs(*real) < kExactIntegers) return std::int64_t(*real);
-  return std::visit([](const auto& held) { return Json(held); }, value);
-}
-
-/// "pio.setup_cycles" at ["pio"]["setup_cycles"].
-Json chip_json(const model::ChipConfig& chip) {
-  Json json = {{"preset", chip.preset}};
-  for (const model::ParameterInfo& parameter : model::parameter_table()) {
-    std::string path = parameter.key;
-    std::replace(path.begin(), path.end(), '.', '/');
-    json[Json::json_pointer("/" + path)] = value_json(parameter.read(chip));
-  }
   return json;
 }
 
@@ -140,7 +121,7 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   json["timing"] = request.native ? "none" : timing_name(request.options.timing);
   if (!request.importance.empty()) json["importance"] = request.importance;
   json["chip_preset"] = request.options.chip.preset;
-  json["chip_config"] = chip_json(request.options.chip);
+  json["chip_config"] = chip_config_json(request.options.chip);
   Json measured;
   write_counters(run_counters(), result, measured);
   const Json simulator = measured[kSimulatorSection];

@@ -1,5 +1,4 @@
-// Built once for each x86-64 level (firmware/CMakeLists.txt); CN_MOVE_DATA is then the level's name for
-// move_data.
+// Built once for each x86-64 level, whose name is the namespace of move_data.
 
 #include <immintrin.h>
 
@@ -7,10 +6,6 @@
 #include <cstring>
 
 #include "firmware/cn/chip/transfer.hpp"
-
-#ifndef CN_MOVE_DATA
-#define CN_MOVE_DATA move_data
-#endif
 
 namespace cn {
 namespace {
@@ -365,12 +360,16 @@ void move_with_tail(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mo
 
 }  // namespace
 
-void CN_MOVE_DATA(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
+namespace CN_LEVEL {
+
+void move_data(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono) {
   if (transfer.direction == Direction::mono_to_poly) {
     move_with_tail<Direction::mono_to_poly>(transfer, poly, mono);
   } else {
     move_with_tail<Direction::poly_to_mono>(transfer, poly, mono);
   }
 }
+
+}  // namespace CN_LEVEL
 
 }  // namespace cn

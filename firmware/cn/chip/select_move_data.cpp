@@ -3,17 +3,23 @@
 
 namespace cn {
 
-void move_data_kernels_x86_64_v2(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
-void move_data_kernels_x86_64_v3(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
-void move_data_kernels_x86_64_v4(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
+namespace level_x86_64_v2 {
+void move_data(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
+}
+namespace level_x86_64_v3 {
+void move_data(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
+}
+namespace level_x86_64_v4 {
+void move_data(const Transfer& transfer, PolyMemory& poly, std::uint8_t* mono);
+}
 
 namespace {
 
 auto* move_data_at(Level level) {
   return at_level(level, [](auto built) {
-    if constexpr (built == Level::x86_64_v4) return move_data_kernels_x86_64_v4;
-    if constexpr (built == Level::x86_64_v3) return move_data_kernels_x86_64_v3;
-    if constexpr (built == Level::x86_64_v2) return move_data_kernels_x86_64_v2;
+    if constexpr (built == Level::x86_64_v4) return level_x86_64_v4::move_data;
+    if constexpr (built == Level::x86_64_v3) return level_x86_64_v3::move_data;
+    if constexpr (built == Level::x86_64_v2) return level_x86_64_v2::move_data;
   });
 }
 

@@ -3,12 +3,6 @@
 namespace cn {
 namespace {
 
-bool processor_executes(Level level) {
-  if (level == Level::x86_64_v4) return __builtin_cpu_supports("x86-64-v4") != 0;
-  if (level == Level::x86_64_v3) return __builtin_cpu_supports("x86-64-v3") != 0;
-  return __builtin_cpu_supports("x86-64-v2") != 0;
-}
-
 std::string names_of(const std::vector<Level>& levels) {
   std::string names;
   for (const Level level : levels) names += (names.empty() ? "" : ", ") + name_of(level);
@@ -16,6 +10,12 @@ std::string names_of(const std::vector<Level>& levels) {
 }
 
 }  // namespace
+
+bool processor_executes(Level level) {
+  if (level == Level::x86_64_v4) return __builtin_cpu_supports("x86-64-v4") != 0;
+  if (level == Level::x86_64_v3) return __builtin_cpu_supports("x86-64-v3") != 0;
+  return __builtin_cpu_supports("x86-64-v2") != 0;
+}
 
 std::string name_of(Level level) {
   return "v" + std::to_string(2 + static_cast<int>(level));

@@ -22,6 +22,8 @@ class LevelError : public std::runtime_error {
 /// Returns "v2", "v3" or "v4".
 std::string name_of(Level level);
 
+bool processor_executes(Level level);
+
 /// Levels that this build has kernels for, narrow to wide.
 std::vector<Level> built_levels();
 

@@ -1,4 +1,4 @@
-// Built once for each x86-64 level; PATH_TRACER_KERNELS is the level's name for the table.
+// Built once for each x86-64 level, whose name is the namespace of the table.
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
 
@@ -16,8 +16,10 @@
 
 namespace path_tracer {
 
-const TraversalKernels& TRAVERSAL_KERNELS();
-const PacketKernels& PACKET_KERNELS();
+inline namespace CN_LEVEL {
+const TraversalKernels& traversal_kernel_table();
+const PacketKernels& packet_kernel_table();
+}  // namespace CN_LEVEL
 
 namespace {
 
@@ -375,7 +377,9 @@ void fold(const FoldArguments& arguments) {
 
 }  // namespace
 
-const Kernels& PATH_TRACER_KERNELS() {
+inline namespace CN_LEVEL {
+
+const Kernels& kernel_table() {
   static constexpr Kernels table{
       cn::kernel<IntersectArguments, intersect>("intersect"),
       cn::kernel<ScatterArguments, scatter>("scatter"),
@@ -395,10 +399,11 @@ const Kernels& PATH_TRACER_KERNELS() {
       cn::kernel<NumberedPlaceArguments, numbered_place>("binned_hit_place"),
       cn::kernel<LocateSlotArguments, locate_slot>("locate_slot"),
       cn::kernel<FlagArguments, flag>("flag"),
-      TRAVERSAL_KERNELS,
-      PACKET_KERNELS,
+      traversal_kernel_table,
+      packet_kernel_table,
   };
   return table;
 }
 
+}  // namespace CN_LEVEL
 }  // namespace path_tracer

@@ -1,4 +1,4 @@
-// Built once for each x86-64 level; PACKET_KERNELS is the level's name for the table.
+// Built once for each x86-64 level, whose name is the namespace of the table.
 
 #include "firmware/path_tracer/kernels/packet_kernels.hpp"
 
@@ -110,7 +110,9 @@ void test_leaf(const TestLeafArguments& arguments) {
 
 }  // namespace
 
-const PacketKernels& PACKET_KERNELS() {
+inline namespace CN_LEVEL {
+
+const PacketKernels& packet_kernel_table() {
   static constexpr PacketKernels table{
       cn::kernel<BeginPacketArguments, begin>("begin_packet"),
       cn::kernel<WantArguments, want>("want"),
@@ -120,4 +122,5 @@ const PacketKernels& PACKET_KERNELS() {
   return table;
 }
 
+}  // namespace CN_LEVEL
 }  // namespace path_tracer

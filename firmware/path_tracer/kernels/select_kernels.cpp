@@ -2,21 +2,29 @@
 
 namespace path_tracer {
 
-const Kernels& kernels_x86_64_v2();
-const Kernels& kernels_x86_64_v3();
-const Kernels& kernels_x86_64_v4();
-const Kernels& kernels_observed();
+namespace level_x86_64_v2 {
+const Kernels& kernel_table();
+}
+namespace level_x86_64_v3 {
+const Kernels& kernel_table();
+}
+namespace level_x86_64_v4 {
+const Kernels& kernel_table();
+}
+namespace level_observed {
+const Kernels& kernel_table();
+}
 
 const Kernels& kernels(Level level) {
   return cn::at_level(level, [](auto built) -> const Kernels& {
-    if constexpr (built == cn::Level::x86_64_v4) return kernels_x86_64_v4();
-    if constexpr (built == cn::Level::x86_64_v3) return kernels_x86_64_v3();
-    if constexpr (built == cn::Level::x86_64_v2) return kernels_x86_64_v2();
+    if constexpr (built == cn::Level::x86_64_v4) return level_x86_64_v4::kernel_table();
+    if constexpr (built == cn::Level::x86_64_v3) return level_x86_64_v3::kernel_table();
+    if constexpr (built == cn::Level::x86_64_v2) return level_x86_64_v2::kernel_table();
   });
 }
 
 const Kernels& observed_kernels() {
-  return kernels_observed();
+  return level_observed::kernel_table();
 }
 
 }  // namespace path_tracer

@@ -1,4 +1,4 @@
-// Built once for each x86-64 level; TRAVERSAL_KERNELS is the level's name for the table.
+// Built once for each x86-64 level, whose name is the namespace of the table.
 
 #include "firmware/path_tracer/kernels/traversal_kernels.hpp"
 
@@ -159,13 +159,15 @@ void append_to_blocks(const AppendToBlocksArguments& arguments) {
 
 }  // namespace
 
-const TraversalKernels& TRAVERSAL_KERNELS() {
+inline namespace CN_LEVEL {
+
+const TraversalKernels& traversal_kernel_table() {
   static const TraversalKernels table{
       cn::kernel<EnqueueArguments, enqueue>("enqueue"),
       cn::kernel<TakeRaysArguments, take_rays>("take_rays"),
       cn::kernel<EnterArguments, enter>("enter"),
       cn::kernel<LocateArguments, locate>("locate"),
-      {TRAVERSE_KERNELS<2>(), TRAVERSE_KERNELS<4>(), TRAVERSE_KERNELS<8>()},
+      {traverse_kernel_table<2>(), traverse_kernel_table<4>(), traverse_kernel_table<8>()},
       cn::kernel<FinishArguments, finish>("finish"),
       cn::kernel<AppendRaysArguments, append_rays>("append_rays"),
       cn::kernel<RecallArguments, recall>("recall"),
@@ -177,4 +179,5 @@ const TraversalKernels& TRAVERSAL_KERNELS() {
   return table;
 }
 
+}  // namespace CN_LEVEL
 }  // namespace path_tracer

@@ -82,7 +82,7 @@ constexpr cn::Kernel<TraverseArguments> traverse_kernel() {
 }
 
 template <int width>
-const TraverseKernels& TRAVERSE_KERNELS() {
+const TraverseKernels& CN_LEVEL::traverse_kernel_table() {
   static constexpr TraverseKernels table{traverse_kernel<NodeFormat::fp64, width>(),
                                          traverse_kernel<NodeFormat::fp32, width>(),
                                          traverse_kernel<NodeFormat::quantised8, width>()};

@@ -2,6 +2,6 @@
 
 namespace path_tracer {
 
-template const TraverseKernels& TRAVERSE_KERNELS<2>();
+template const TraverseKernels& CN_LEVEL::traverse_kernel_table<2>();
 
 }  // namespace path_tracer

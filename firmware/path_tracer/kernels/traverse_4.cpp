@@ -2,6 +2,6 @@
 
 namespace path_tracer {
 
-template const TraverseKernels& TRAVERSE_KERNELS<4>();
+template const TraverseKernels& CN_LEVEL::traverse_kernel_table<4>();
 
 }  // namespace path_tracer

@@ -4,9 +4,11 @@
 
 namespace path_tracer {
 
-/// The poly programs that test leaves and visit nodes of 2, 4 or 8 children. TRAVERSE_KERNELS is the level's
-/// name for the table.
+/// The poly programs that test leaves and visit nodes of 2, 4 or 8 children. The namespace is
+/// the level's name.
+inline namespace CN_LEVEL {
 template <int width>
-const TraverseKernels& TRAVERSE_KERNELS();
+const TraverseKernels& traverse_kernel_table();
+}
 
 }  // namespace path_tracer

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "testbench/plug_in/plug_in_run.hpp"
+#include "testbench/run/energy.hpp"
+#include "testbench/run/timing_name.hpp"
+#include "testbench/statistics/chip_config_json.hpp"
+
+namespace testbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string formatted(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), format, value);
+  return buffer;
+}
+
+Json options_json(const plug_in::Firmware& firmware) {
+  Json json = Json::object();
+  for (const plug_in::OptionBase* const option : firmware.options())
+    json[option->name()] = Json::parse(option->value_text());
+  return json;
+}
+
+}  // namespace
+
+Json plug_in_statistics(const plug_in::Firmware& firmware, const PlugInOptions& options,
+                        const PlugInResult& result) {
+  Json json;
+  json["format"] = kPlugInStatisticsFormat;
+  json["firmware"] = {{"name", firmware.name()}, {"options", options_json(firmware)}};
+  if (firmware.work().amount > 0)
+    json["work"] = {{"amount", firmware.work().amount}, {"unit", firmware.work().unit}};
+  json["machine"] = options.native ? "native" : "chip";
+  json["timing"] = options.native ? "none" : timing_name(options.timing);
+  json["chip_config"] = chip_config_json(options.chip);
+  if (!result.chip) return json;
+  json["simulated_cycles"] = result.chip->firmware_cycles;
+  json["simulated_seconds"] = result.chip->seconds();
+  json["chip"] = to_json(*result.chip);
+  return json;
+}
+
+std::string plug_in_table(const plug_in::Firmware& firmware, const PlugInResult& result) {
+  std::string table = firmware.name() + ": results are right\n";
+  if (!result.chip) return table;
+  const ChipStatistics& chip = *result.chip;
+  const auto row = [&](const std::string& name, const std::string& value) {
+    constexpr std::size_t kColumn = 24;
+    const std::string gap(kColumn - std::min(kColumn - 2, name.size()), ' ');
+    table += "  " + name + gap + value + "\n";
+  };
+  row("simulated time",
+      formatted("%.6f s", chip.seconds()) + formatted(" (%.0f cycles)", double(chip.firmware_cycles)));
+  row("with upload, download", formatted("%.6f s", chip.total_seconds()));
+  if (const plug_in::Work work = firmware.work(); work.amount > 0) {
+    row(work.unit + "/s",
+        formatted("%.6g", work.amount / chip.seconds()) +
+            formatted(", %.6g with upload and download", work.amount / chip.total_seconds()));
+  }
+  row("PE utilisation", formatted("%.2f %%", 100 * chip.pe_utilisation()));
+  row("SIMD efficiency", formatted("%.2f %%", 100 * chip.simd_efficiency()));
+  row("exposed PIO", formatted("%.2f %% of the time", 100 * chip.exposed_pio_share()));
+  row("DDR bandwidth", formatted("%.1f MB/s", chip.ddr_bytes_per_second() * 1e-6));
+  row("energy", formatted("%.4g J", energy_of(chip).joules()));
+  return table;
+}
+
+}  // namespace testbench

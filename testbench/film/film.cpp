@@ -55,13 +55,13 @@ void allocate(std::vector<Element>& elements, std::size_t pixels) {
 template <class Element>
 char* put_bytes(const std::vector<Element>& elements, char* to) {
   static_assert(std::is_trivially_copyable_v<Element>);
-  std::memcpy(to, elements.data(), elements.size() * sizeof(Element));
+  if (!elements.empty()) std::memcpy(to, elements.data(), elements.size() * sizeof(Element));
   return to + elements.size() * sizeof(Element);
 }
 
 template <class Element>
 const char* get_bytes(std::vector<Element>& elements, const char* from) {
-  std::memcpy(elements.data(), from, elements.size() * sizeof(Element));
+  if (!elements.empty()) std::memcpy(elements.data(), from, elements.size() * sizeof(Element));
   return from + elements.size() * sizeof(Element);
 }
 

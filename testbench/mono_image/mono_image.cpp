@@ -85,7 +85,7 @@ SurfaceRecord surface_record(const Triangle& triangle, const Material& material,
 
 template <class Record>
 void put(MonoImage& image, cn::MonoPointer<Record> to, const Record* records, std::size_t count) {
-  std::memcpy(image.bytes.data() + to.address, records, count * sizeof(Record));
+  if (count > 0) std::memcpy(image.bytes.data() + to.address, records, count * sizeof(Record));
 }
 
 TreeImage make_tree(const Triangles& triangles, double reach, const path_tracer::ProgramConfig& config) {

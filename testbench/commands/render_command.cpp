@@ -88,7 +88,7 @@ std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& o
   if (firmware.given().count("light_candidates") == 0)
     of.program.light_candidates = suited_light_candidates(loaded);
   path_tracer::ProgramConfig of_chip = of.program;
-  const std::string reason = choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of_chip);
+  std::string reason = choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of_chip);
   if (native && !firmware_search && firmware.given().count("traversal") == 0 && !of.check_hazards) {
     of.program.light_candidates = of_chip.light_candidates;  // for the chip's image
     search_natively(of);

@@ -4,6 +4,7 @@
 
 #include "testbench/commands/bench/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
+#include "testbench/run/render.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/processes.hpp"
 #include "testbench/system/progress_bar.hpp"

@@ -1,8 +1,6 @@
 #include "model/memory/mono_ddr.hpp"
 
-#include <algorithm>
-#include <cstring>
-
+#include "model/memory/plain_access.hpp"
 #include "model/time/annotated_delay.hpp"
 
 namespace model {
@@ -67,18 +65,12 @@ void MonoDdr::finish(tlm::tlm_generic_payload& transaction) {
 
 tlm::tlm_response_status MonoDdr::access_plainly(const tlm::tlm_generic_payload& transaction, Cycles arrival,
                                                  Cycles& finish) {
-  const std::uint64_t address = transaction.get_address();
+  const tlm::tlm_response_status response = check_access(transaction, memory_.size_bytes());
+  if (response != tlm::TLM_OK_RESPONSE) return response;
   const std::uint64_t bytes = transaction.get_data_length();
-  if (!contains(address, bytes)) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  if (transaction.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  if (transaction.get_streaming_width() < bytes) return tlm::TLM_BURST_ERROR_RESPONSE;
-  if (transaction.is_write()) {
-    std::memcpy(memory_.data() + address, transaction.get_data_ptr(), bytes);
-  } else {
-    std::memcpy(transaction.get_data_ptr(), memory_.data() + address, bytes);
-  }
-  finish = timing_.access(address, bytes, transaction.is_write(), arrival).finish;
-  return tlm::TLM_OK_RESPONSE;
+  move_data(transaction, memory_.data(), bytes);
+  finish = timing_.access(transaction.get_address(), bytes, transaction.is_write(), arrival).finish;
+  return response;
 }
 
 tlm::tlm_response_status MonoDdr::serve(PeAddresses& addresses, sc_core::sc_time& delay) {
@@ -95,30 +87,12 @@ tlm::tlm_response_status MonoDdr::serve(PeAddresses& addresses, sc_core::sc_time
 }
 
 unsigned int MonoDdr::transport_dbg(tlm::tlm_generic_payload& transaction) {
-  const std::uint64_t address = transaction.get_address();
-  if (address >= memory_.size_bytes()) return 0;
-  const auto bytes = static_cast<unsigned int>(
-      std::min<std::uint64_t>(transaction.get_data_length(), memory_.size_bytes() - address));
-  if (transaction.is_write()) {
-    std::memcpy(memory_.data() + address, transaction.get_data_ptr(), bytes);
-  } else if (transaction.is_read()) {
-    std::memcpy(transaction.get_data_ptr(), memory_.data() + address, bytes);
-  } else {
-    return 0;
-  }
-  return bytes;
+  return move_for_debug(transaction, memory_.data(), memory_.size_bytes());
 }
 
 bool MonoDdr::get_direct_mem_ptr(tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi) {
-  dmi.init();
-  dmi.set_start_address(0);
-  dmi.set_end_address(memory_.size_bytes() - 1);
-  if (transaction.get_address() >= memory_.size_bytes()) return false;
-  dmi.set_dmi_ptr(memory_.data());
-  dmi.set_read_latency(clock_.time_at(dmi_latency_cycles_));
-  dmi.set_write_latency(clock_.time_at(dmi_latency_cycles_));
-  dmi.allow_read_write();
-  return true;
+  return give_pointer(transaction, dmi, memory_.data(), memory_.size_bytes(),
+                      clock_.time_at(dmi_latency_cycles_));
 }
 
 }  // namespace model

@@ -52,9 +52,6 @@ class MonoDdr : public sc_core::sc_module {
   tlm::tlm_response_status access_plainly(const tlm::tlm_generic_payload& transaction, Cycles arrival,
                                           Cycles& finish);
   tlm::tlm_response_status serve(PeAddresses& addresses, sc_core::sc_time& delay);
-  bool contains(std::uint64_t address, std::uint64_t bytes) const {
-    return address <= memory_.size_bytes() && bytes <= memory_.size_bytes() - address;
-  }
 
   ClockDomain clock_;
   DdrTiming timing_;

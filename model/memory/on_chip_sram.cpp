@@ -1,8 +1,6 @@
 #include "model/memory/on_chip_sram.hpp"
 
-#include <algorithm>
-#include <cstring>
-
+#include "model/memory/plain_access.hpp"
 #include "model/time/annotated_delay.hpp"
 
 namespace model {
@@ -46,50 +44,20 @@ Cycles OnChipSram::take(tlm::tlm_generic_payload& transaction) {
 
 Cycles OnChipSram::serve(tlm::tlm_generic_payload& transaction, Cycles arrival) {
   transaction.set_dmi_allowed(true);
-  transaction.set_response_status(check(transaction));
-  if (transaction.is_response_error() || transaction.get_command() == tlm::TLM_IGNORE_COMMAND) return arrival;
-  move(transaction, transaction.get_data_length());
+  const bool is_access = transaction.get_command() != tlm::TLM_IGNORE_COMMAND;
+  transaction.set_response_status(is_access ? check_access(transaction, memory_.size())
+                                            : tlm::TLM_OK_RESPONSE);
+  if (!is_access || transaction.is_response_error()) return arrival;
+  move_data(transaction, memory_.data(), transaction.get_data_length());
   return timing_.access(transaction.get_data_length(), transaction.is_write(), arrival).finish;
 }
 
-tlm::tlm_response_status OnChipSram::check(const tlm::tlm_generic_payload& transaction) const {
-  if (transaction.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_OK_RESPONSE;
-  const std::uint64_t address = transaction.get_address();
-  const std::uint64_t bytes = transaction.get_data_length();
-  if (address > memory_.size() || bytes > memory_.size() - address) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  if (transaction.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  if (transaction.get_streaming_width() < bytes) return tlm::TLM_BURST_ERROR_RESPONSE;
-  return tlm::TLM_OK_RESPONSE;
-}
-
-void OnChipSram::move(tlm::tlm_generic_payload& transaction, std::uint64_t bytes) {
-  std::uint8_t* const storage = memory_.data() + transaction.get_address();
-  if (transaction.is_write()) {
-    std::memcpy(storage, transaction.get_data_ptr(), bytes);
-  } else {
-    std::memcpy(transaction.get_data_ptr(), storage, bytes);
-  }
-}
-
 unsigned int OnChipSram::transport_dbg(tlm::tlm_generic_payload& transaction) {
-  const std::uint64_t address = transaction.get_address();
-  if (address >= memory_.size() || transaction.get_command() == tlm::TLM_IGNORE_COMMAND) return 0;
-  const std::uint64_t bytes =
-      std::min<std::uint64_t>(transaction.get_data_length(), memory_.size() - address);
-  move(transaction, bytes);
-  return static_cast<unsigned int>(bytes);
+  return move_for_debug(transaction, memory_.data(), memory_.size());
 }
 
 bool OnChipSram::get_direct_mem_ptr(tlm::tlm_generic_payload& transaction, tlm::tlm_dmi& dmi) {
-  dmi.init();
-  dmi.set_start_address(0);
-  dmi.set_end_address(memory_.size() - 1);
-  if (transaction.get_address() >= memory_.size()) return false;
-  dmi.set_dmi_ptr(memory_.data());
-  dmi.set_read_latency(clock_.time_at(dmi_latency_cycles_));
-  dmi.set_write_latency(clock_.time_at(dmi_latency_cycles_));
-  dmi.allow_read_write();
-  return true;
+  return give_pointer(transaction, dmi, memory_.data(), memory_.size(), clock_.time_at(dmi_latency_cycles_));
 }
 
 }  // namespace model

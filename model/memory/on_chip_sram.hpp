@@ -40,8 +40,6 @@ class OnChipSram : public sc_core::sc_module {
   Cycles take(tlm::tlm_generic_payload& transaction);
   /// Moves the data and sets the response. Returns when it is over, `arrival` after an error.
   Cycles serve(tlm::tlm_generic_payload& transaction, Cycles arrival);
-  tlm::tlm_response_status check(const tlm::tlm_generic_payload& transaction) const;
-  void move(tlm::tlm_generic_payload& transaction, std::uint64_t bytes);
 
   ClockDomain clock_;
   OnChipSramTiming timing_;

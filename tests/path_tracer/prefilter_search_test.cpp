@@ -5,7 +5,6 @@
 
 #include "tests/support/native_example.hpp"
 #include "tests/support/search_meshes.hpp"
-#include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
 namespace prefilter_search_test {
@@ -14,7 +13,6 @@ using path_tracer::RayRecord;
 using test_support::RaySearch;
 using test_support::SearchHit;
 using test_support::SearchScene;
-using test_support::TestRays;
 
 struct Issued {
   std::vector<cn::IssueCounts> counts;
@@ -41,24 +39,12 @@ TEST_P(PrefilterSearch, FindsAndIssuesWhatATestOfEveryTriangleDoes) {
   const path_tracer::Prefilter prefilter = path_tracer::make_prefilter(
       searched.records(), searched.triangle_count, searched.reach, searched.layers);
   RaySearch search(level);
-  TestRays source(scene, 31);
-  int hits = 0;
-  unsigned rays_in_all = 0;
-  for (int batch = 0; batch < 150; ++batch) {
-    const int count = batch % 3 == 0 ? 1 + batch % RaySearch::kPes : RaySearch::kPes;
-    std::vector<RayRecord> rays;
-    for (int i = 0; i < count; ++i) rays.push_back(source.ray(rays_in_all++ % TestRays::kKinds));
-    const std::vector<SearchHit> expected = search.brute_force(searched, rays);
+  expect_hits_of_brute_force(scene, searched, search, 31, [&](const std::vector<RayRecord>& rays) {
     const Issued all_tested(search.issued());
-    const std::vector<SearchHit> found = search.brute_force(searched, rays, &prefilter);
+    std::vector<SearchHit> found = search.brute_force(searched, rays, &prefilter);
     EXPECT_TRUE(Issued(search.issued()) == all_tested);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      ASSERT_TRUE(same(found[i], expected[i]))
-          << "a ray hits " << found[i].number << " instead of " << expected[i].number;
-      hits += found[i].number >= 0;
-    }
-  }
-  EXPECT_GT(hits, int(rays_in_all) / 20);
+    return found;
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, PrefilterSearch,

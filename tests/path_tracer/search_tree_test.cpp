@@ -10,7 +10,6 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/search_meshes.hpp"
-#include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
 namespace search_tree_test {
@@ -19,9 +18,7 @@ using path_tracer::RayRecord;
 using path_tracer::SearchNode;
 using path_tracer::SearchTree;
 using test_support::RaySearch;
-using test_support::SearchHit;
 using test_support::SearchScene;
-using test_support::TestRays;
 
 SearchTree tree_of(const SearchScene& scene) {
   return path_tracer::make_search_tree(scene.records(), scene.triangle_count, scene.reach, scene.layers);
@@ -36,22 +33,9 @@ TEST_P(SearchTreeHits, AreThoseOfATestOfEveryTriangle) {
       test_support::search_scene(scene, {{path_tracer::NodeFormat::fp32, 4}, 1, 1, 2, 0, 0});
   const SearchTree tree = tree_of(searched);
   RaySearch search(level);
-  TestRays source(scene, 37);
-  int hits = 0;
-  unsigned rays_in_all = 0;
-  for (int batch = 0; batch < 150; ++batch) {
-    const int count = batch % 3 == 0 ? 1 + batch % RaySearch::kPes : RaySearch::kPes;
-    std::vector<RayRecord> rays;
-    for (int i = 0; i < count; ++i) rays.push_back(source.ray(rays_in_all++ % TestRays::kKinds));
-    const std::vector<SearchHit> expected = search.brute_force(searched, rays);
-    const std::vector<SearchHit> found = search.brute_force(searched, rays, nullptr, &tree);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      ASSERT_TRUE(same(found[i], expected[i]))
-          << "a ray hits " << found[i].number << " instead of " << expected[i].number;
-      hits += found[i].number >= 0;
-    }
-  }
-  EXPECT_GT(hits, int(rays_in_all) / 20);
+  expect_hits_of_brute_force(scene, searched, search, 37, [&](const std::vector<RayRecord>& rays) {
+    return search.brute_force(searched, rays, nullptr, &tree);
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SearchTreeHits,

@@ -1,9 +1,12 @@
 #include "tests/support/tree_search.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <stdexcept>
 
 #include "testbench/bvh/tree_image.hpp"
+#include "tests/support/test_rays.hpp"
 
 namespace test_support {
 
@@ -163,6 +166,27 @@ std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const st
   std::vector<SearchHit> hits;
   for (int pe = 0; pe < count; ++pe) hits.push_back(hit_of(pe, at));
   return hits;
+}
+
+void expect_hits_of_brute_force(
+    const testbench::Scene& scene, const SearchScene& searched, RaySearch& search, unsigned seed,
+    const std::function<std::vector<SearchHit>(const std::vector<RayRecord>&)>& search_for) {
+  TestRays source(scene, seed);
+  int hits = 0;
+  unsigned rays_in_all = 0;
+  for (int batch = 0; batch < 150; ++batch) {
+    const int count = batch % 3 == 0 ? 1 + batch % RaySearch::kPes : RaySearch::kPes;
+    std::vector<RayRecord> rays;
+    for (int i = 0; i < count; ++i) rays.push_back(source.ray(rays_in_all++ % TestRays::kKinds));
+    const std::vector<SearchHit> expected = search.brute_force(searched, rays);
+    const std::vector<SearchHit> found = search_for(rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_TRUE(same(found[i], expected[i]))
+          << "a ray hits " << found[i].number << " instead of " << expected[i].number;
+      hits += found[i].number >= 0;
+    }
+  }
+  EXPECT_GT(hits, int(rays_in_all) / 20);
 }
 
 std::vector<SearchHit> RaySearch::through_tree(const SearchScene& scene, const std::vector<QueuedRay>& rays,

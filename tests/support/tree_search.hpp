@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
@@ -80,5 +81,12 @@ class RaySearch {
   cn::IssueTree issued_;
   std::uint64_t turns_ = 0;
 };
+
+/// Searches for rays of all kinds, with as many PEs as there may be, by brute force and by
+/// `search_for(rays)`: expects the same hits to the bit, and that a twentieth of the rays hits something. The
+/// search's issued() is that of brute force when `search_for` is called.
+void expect_hits_of_brute_force(
+    const testbench::Scene& scene, const SearchScene& searched, RaySearch& search, unsigned seed,
+    const std::function<std::vector<SearchHit>(const std::vector<path_tracer::RayRecord>&)>& search_for);
 
 }  // namespace test_support

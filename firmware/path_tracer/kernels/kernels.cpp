@@ -163,9 +163,9 @@ void illuminate_by_any(const IlluminateArguments& arguments) {
   const LightWithoutTriangle other = light_without_triangle(arguments);
   Rgb radiance = cn::select(other.sees, other.radiance, none);
   const mask hit = arguments.hit.get(&HitRecord::hit) != 0;
-  mask sees = hit & (arguments.lights.surfaces ? is_light(arguments) : other.sees);
+  mask sees = hit & (arguments.features.lights.surfaces ? is_light(arguments) : other.sees);
   if (arguments.features.coverage) sees = sees & end_shadow_rays(arguments, hit, other.sees | sees);
-  if (arguments.lights.surfaces)
+  if (arguments.features.lights.surfaces)
     radiance =
         cn::select(sees, emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups), radiance);
   arguments.direct_light.set(&DirectLightRecord::radiance,
@@ -173,7 +173,7 @@ void illuminate_by_any(const IlluminateArguments& arguments) {
 }
 
 void illuminate(const IlluminateArguments& arguments) {
-  if (arguments.lights.without_triangles()) {
+  if (arguments.features.lights.without_triangles()) {
     illuminate_by_any(arguments);
     return;
   }

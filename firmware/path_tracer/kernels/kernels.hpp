@@ -111,12 +111,11 @@ struct IlluminateArguments {
   PolyPointer<SurfaceRecord> surface;
   PolyPointer<LightingRecord> lighting;
   bool is_in_layers = false;
-  LightKinds lights;
+  Features features;
   RecordSizes sizes{Features{}};
   PolyPointer<TextureLookUp> look_ups;
   PolyPointer<DirectLightRecord> direct_light;
   // Of scenes with coverage only:
-  Features features;
   Sampler sampler = Sampler::philox;
   std::uint64_t seed = 0;
   PolyPointer<RayRecord> shadow_ray;

@@ -104,7 +104,7 @@ inline LightWithoutTriangle light_without_triangle(const IlluminateArguments& ar
   const mask is_far = face < kNoFace;
   const mask is_blocked = hit & (is_far | (distance < 1.0));
   LightWithoutTriangle light{(face < 0) & !is_blocked, {1.0, 1.0, 1.0}};
-  if (!arguments.lights.environment) return light;
+  if (!arguments.features.lights.environment) return light;
   const auto texel = tail<EnvironmentLookUp>(arguments.look_ups, arguments.sizes.environment)
                          .part(&EnvironmentLookUp::texel);
   light.radiance = cn::select(face == kEnvironmentFace, radiance_of(texel), light.radiance);

@@ -214,8 +214,7 @@ void BinnedIntersectionStage::prepare(std::uint64_t step, int group) {
   load_records(step, group);
   const Features& features = context_.config.features;
   const bool shadow_rays_look_up = features.lights.environment || features.textures.any_for_shadow_rays();
-  if (has_shadow_rays(group) ? shadow_rays_look_up : features.looks_up()) load_all_texels(step, group);
-  if (context_.config.resamples_lights() && !has_shadow_rays(group)) load_resampled_lights(step, group);
+  if (!has_shadow_rays(group) || shadow_rays_look_up) IntersectionStage::prepare(step, group);
 }
 
 void BinnedIntersectionStage::locate_saves(std::uint64_t step, int group) {

@@ -251,11 +251,10 @@ void IntersectionStage::process_shadow_rays(std::uint64_t step, int block) {
   arguments.surface = from.surface;
   arguments.lighting = from.lighting;
   arguments.is_in_layers = context_.layout.layers.any;
-  arguments.lights = context_.config.features.lights;
+  arguments.features = context_.config.features;
   arguments.sizes = context_.layout.sizes;
   arguments.look_ups = from.look_ups;
   arguments.direct_light = to.direct_light;
-  arguments.features = context_.config.features;
   arguments.sampler = context_.config.sampler;
   arguments.seed = context_.config.seed;
   arguments.shadow_ray = to.shadow_ray.ray;

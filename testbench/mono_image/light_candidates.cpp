@@ -75,13 +75,14 @@ double weight_of(const Emitter& emitter, double probability, double scene_radius
 }  // namespace
 
 std::vector<LightCandidate> light_candidates(const std::vector<Emitter>& emitters, const LightChoice& choice,
-                                             double radius) {
+                                             const std::vector<double>& visibility, double radius) {
   std::vector<LightCandidate> candidates;
   std::vector<double> weights;
   for (std::size_t i = 0; i < choice.order.size(); ++i) {
     const Emitter& emitter = emitters[choice.order[i]];
     candidates.push_back(candidate_of(emitter, radius));
-    weights.push_back(weight_of(emitter, choice.probability[i], radius));
+    // A strong light that is hidden must not be taken for the others' sake.
+    weights.push_back(weight_of(emitter, choice.probability[i], radius) * visibility[choice.order[i]]);
   }
   // Only their proportions count; none may be 0.
   const double largest = *std::max_element(weights.begin(), weights.end());

@@ -54,6 +54,13 @@ double mean_of_channels(const glm::dvec3& colour) {
   return (colour.x + colour.y + colour.z) / 3.0;
 }
 
+/// For each cluster the root of the mean square of what it does: in that proportion clusters are chosen with
+/// the least variance.
+struct Effects {
+  std::vector<double> seen;
+  std::vector<double> unoccluded;  ///< if nothing were between a surface and a light
+};
+
 /// Paths from the camera that bounce diffusely; at each vertex a shadow ray to each cluster.
 class Pilot {
  public:
@@ -63,7 +70,8 @@ class Pilot {
         clusters_(clusters),
         rays_(scene.triangles),
         surroundings_(surroundings_of(scene)),
-        sum_of_squares_(clusters.size(), 0.0) {}
+        seen_(clusters.size(), 0.0),
+        unoccluded_(clusters.size(), 0.0) {}
 
   void trace(int path) {
     PathNumbers numbers(path);
@@ -94,15 +102,14 @@ class Pilot {
     }
   }
 
-  /// For each cluster the root of the mean square of what it does: in that proportion clusters are chosen
-  /// with the least variance.
-  std::vector<double> effects() const {
-    std::vector<double> effects;
-    for (const double sum : sum_of_squares_) effects.push_back(std::sqrt(sum));
-    return effects;
-  }
+  Effects effects() const { return {roots_of(seen_), roots_of(unoccluded_)}; }
 
  private:
+  static std::vector<double> roots_of(const std::vector<double>& sums) {
+    std::vector<double> roots;
+    for (const double sum : sums) roots.push_back(std::sqrt(sum));
+    return roots;
+  }
   static bool is_mirror(const Material& material) {
     return material.metallic > 0.5 && material.roughness < 0.1;
   }
@@ -117,10 +124,10 @@ class Pilot {
       const Emitter& emitter = emitters_[cluster.emitters[std::size_t(found - cluster.power_cdf.begin())]];
       const Sighting sighting = sight(emitter, position, normal, place, surroundings_);
       if (!(sighting.irradiance > 0.0)) continue;
-      constexpr double kBeforeLight = 1.0 - 1e-6;
-      if (rays_.is_blocked(position, sighting.to_light, kBeforeLight)) continue;
       const double effect = albedo * sighting.irradiance * (cluster.power() / emitter.power);
-      sum_of_squares_[i] += effect * effect;
+      unoccluded_[i] += effect * effect;
+      constexpr double kBeforeLight = 1.0 - 1e-6;
+      if (!rays_.is_blocked(position, sighting.to_light, kBeforeLight)) seen_[i] += effect * effect;
     }
   }
 
@@ -129,11 +136,13 @@ class Pilot {
   const std::vector<LightCluster>& clusters_;
   SceneRays rays_;
   Surroundings surroundings_;
-  std::vector<double> sum_of_squares_;
+  // Sums of squares:
+  std::vector<double> seen_;
+  std::vector<double> unoccluded_;
 };
 
-std::vector<double> effects_of(const Scene& scene, const std::vector<Emitter>& emitters,
-                               const std::vector<LightCluster>& clusters) {
+Effects effects_of(const Scene& scene, const std::vector<Emitter>& emitters,
+                   const std::vector<LightCluster>& clusters) {
   constexpr int kUsualVertices = 3;
   const int paths =
       std::clamp(kShadowRays / (kUsualVertices * static_cast<int>(clusters.size())), kLeastPaths, kMostPaths);
@@ -142,9 +151,9 @@ std::vector<double> effects_of(const Scene& scene, const std::vector<Emitter>& e
   return pilot.effects();
 }
 
-/// The share of each light in what all do, as the paths saw it; empty if they saw nothing.
-std::vector<double> seen_shares(const std::vector<LightCluster>& clusters, const std::vector<double>& effects,
-                                const std::vector<Emitter>& emitters) {
+/// The share of each light in what all do; empty if they do nothing.
+std::vector<double> shares_of(const std::vector<LightCluster>& clusters, const std::vector<double>& effects,
+                              const std::vector<Emitter>& emitters) {
   const double total = std::accumulate(effects.begin(), effects.end(), 0.0);
   if (!(total > 0.0)) return {};
   std::vector<double> shares(emitters.size());
@@ -156,20 +165,28 @@ std::vector<double> seen_shares(const std::vector<LightCluster>& clusters, const
 
 }  // namespace
 
-std::vector<double> light_weights(const Scene& scene, const std::vector<Emitter>& emitters) {
-  std::vector<double> weights;
-  for (const Emitter& emitter : emitters) weights.push_back(emitter.power);
+LightWeights light_weights(const Scene& scene, const std::vector<Emitter>& emitters) {
+  LightWeights weights;
+  weights.visibility.assign(emitters.size(), 1.0);
+  for (const Emitter& emitter : emitters) weights.choice.push_back(emitter.power);
   const std::vector<LightCluster> clusters = cluster_lights(emitters, kMostClusters);
   std::vector<double> seen;
-  if (clusters.size() > 1) seen = seen_shares(clusters, effects_of(scene, emitters, clusters), emitters);
+  std::vector<double> unoccluded;
+  if (clusters.size() > 1) {
+    const Effects effects = effects_of(scene, emitters, clusters);
+    seen = shares_of(clusters, effects.seen, emitters);
+    unoccluded = shares_of(clusters, effects.unoccluded, emitters);
+  }
   if (seen.empty() && emitters.size() <= kMostSingleLights) return weights;
 
-  const double total_power = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double total_power = std::accumulate(weights.choice.begin(), weights.choice.end(), 0.0);
   const double equal_part = kEqualShare / double(emitters.size());
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const double by_power = weights[i] / total_power;
+  for (std::size_t i = 0; i < emitters.size(); ++i) {
+    const double by_power = weights.choice[i] / total_power;
     const double known = seen.empty() ? by_power : seen[i];
-    weights[i] = (1.0 - kPowerShare - kEqualShare) * known + kPowerShare * by_power + equal_part;
+    weights.choice[i] = (1.0 - kPowerShare - kEqualShare) * known + kPowerShare * by_power + equal_part;
+    if (seen.empty()) continue;
+    weights.visibility[i] = weights.choice[i] / (unoccluded[i] > 0.0 ? unoccluded[i] : by_power);
   }
   return weights;
 }

@@ -81,9 +81,10 @@ Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
   Lights lights;
   lights.suns = suns_of(scene);
   if (emitters.empty()) return lights;
-  const LightChoice choice = choose_by(light_weights(scene, emitters));
+  const LightWeights weights = light_weights(scene, emitters);
+  const LightChoice choice = choose_by(weights.choice);
   add_records(emitters, choice, lights);
-  lights.candidates = light_candidates(emitters, choice, radius);
+  lights.candidates = light_candidates(emitters, choice, weights.visibility, radius);
   if (!cells.emitters.empty())
     lights.environment_texels =
         environment_texels(scene.environment, cells, pdf_of_cells(cells, choice, first_cell));

@@ -131,6 +131,38 @@ TEST_F(LightCandidates, LeaveTheMeanAsItIs) {
   expect_same_mean(under_every_kind({16, 12}), Estimator::per_lobe);
 }
 
+/// Adds a lamp in a closed box of grey walls.
+void add_sealed_lamp(Scene& scene, double emission) {
+  scene.materials.push_back({"sealed", glm::dvec3(0.0), glm::dvec3(emission)});
+  const glm::dvec3 at(2.0, 0.5, 2.0);
+  const glm::dvec3 edges[3] = {{0.4, 0, 0}, {0, 0.4, 0}, {0, 0, 0.4}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3& edge1 = edges[(axis + 1) % 3];
+    const glm::dvec3& edge2 = edges[(axis + 2) % 3];
+    add_square(scene, at, edge2, edge1, 0);
+    add_square(scene, at + edges[axis], edge1, edge2, 0);
+  }
+  add_square(scene, at + glm::dvec3(0.1, 0.2, 0.1), {0.1, 0, 0}, {0, 0, 0.1},
+             static_cast<std::int32_t>(scene.materials.size()) - 1);
+}
+
+/// Beside an emission of 1e8 a film keeps too few digits of the others' squares to tell variances.
+TEST_F(LightCandidates, OfAHiddenLightHideNoOther) {
+  for (const double emission : {1e4, 1e8}) {
+    Scene scene = under_lamps(2, {16, 12});
+    add_sealed_lamp(scene, emission);
+    const Estimate one = estimate(scene, options_for(1, 256));
+    for (const int candidates : kCounts) {
+      RenderOptions options = options_for(candidates, 256);
+      options.program.seed = std::uint64_t(200 + candidates);
+      const Estimate many = estimate(scene, options);
+      EXPECT_NEAR(many.mean, one.mean, 0.01 * one.mean) << candidates << " candidates, emission " << emission;
+      if (emission > 1e4) continue;
+      EXPECT_LT(many.variance, 1.5 * one.variance) << candidates << " candidates";
+    }
+  }
+}
+
 /// All candidates are the one light, and the factor is 1 whatever the estimate.
 TEST_F(LightCandidates, OfASingleLightAreThatLight) {
   const Scene scene = test_support::plane_under_light({{0.25, 0.5, 0.75}, {4.0, 2.0, 1.0}}, {8, 6});

@@ -63,7 +63,7 @@ TEST(LightChoice, WeakLightsAmongManyKeepAChance) {
   emitter.power = 1e-30;
   std::vector<testbench::Emitter> emitters(100000, emitter);
   emitters[77].power = 1.0;
-  const LightChoice choice = choose_by(testbench::light_weights(Scene{}, emitters));
+  const LightChoice choice = choose_by(testbench::light_weights(Scene{}, emitters).choice);
   EXPECT_EQ(choice.order[0], 77u);
   for (const double probability : choice.probability) ASSERT_GT(probability, 0x1p-24);
 }
@@ -95,7 +95,8 @@ Scene hidden_lamp(double emission) {
 std::vector<double> weights_of(const Scene& scene) {
   return testbench::light_weights(scene,
                                   testbench::surface_emitters(scene, testbench::number_faces(scene.triangles),
-                                                              path_tracer::LightSampling::solid_angle));
+                                                              path_tracer::LightSampling::solid_angle))
+      .choice;
 }
 
 TEST(LightPilot, AHiddenLightKeepsItsShareByPowerAndNoMore) {
@@ -109,11 +110,26 @@ TEST(LightPilot, AHiddenLightKeepsItsShareByPowerAndNoMore) {
   }
 }
 
+/// What candidates are taken by (light_candidates.hpp): a strong light that is hidden comes after a weak one
+/// that is seen.
+TEST(LightPilot, AHiddenLightIsLessVisibleThanItIsStronger) {
+  for (const double emission : {1e6, 1e8}) {
+    const Scene scene = hidden_lamp(emission);
+    const std::vector<double> visibility =
+        testbench::light_weights(scene,
+                                 testbench::surface_emitters(scene, testbench::number_faces(scene.triangles),
+                                                             path_tracer::LightSampling::solid_angle))
+            .visibility;
+    const double area_ratio = 0.02 * 0.02 / (0.2 * 0.2);
+    EXPECT_LT(visibility[1] * emission * area_ratio, 0.2 * visibility[0]) << emission;
+  }
+}
+
 TEST(LightPilot, NoLightIsFarBelowItsShareByPower) {
   const Scene scene = test_support::triangle_soup(400, 3, {16, 16});
   const std::vector<testbench::Emitter> emitters = testbench::surface_emitters(
       scene, testbench::number_faces(scene.triangles), path_tracer::LightSampling::area);
-  const std::vector<double> weights = testbench::light_weights(scene, emitters);
+  const std::vector<double> weights = testbench::light_weights(scene, emitters).choice;
   double power = 0;
   double total = 0;
   for (std::size_t i = 0; i < emitters.size(); ++i) {
@@ -127,7 +143,7 @@ TEST(LightPilot, NoLightIsFarBelowItsShareByPower) {
     any_differs = any_differs || std::abs(weights[i] - emitters[i].power / power) > 0.01 * weights[i];
   }
   EXPECT_TRUE(any_differs);
-  EXPECT_EQ(testbench::light_weights(scene, emitters), weights);
+  EXPECT_EQ(testbench::light_weights(scene, emitters).choice, weights);
 }
 
 /// Where the paths see no light, and where the lights are one surface, the choice is by power.
@@ -139,7 +155,7 @@ TEST(LightPilot, WithoutKnowledgeTheChoiceIsByPower) {
   Scene lamp_alone = hidden_lamp(0.0);
   const auto by_area = testbench::surface_emitters(lamp_alone, testbench::number_faces(lamp_alone.triangles),
                                                    path_tracer::LightSampling::area);
-  const std::vector<double> halves = testbench::light_weights(lamp_alone, by_area);
+  const std::vector<double> halves = testbench::light_weights(lamp_alone, by_area).choice;
   ASSERT_EQ(halves.size(), 2u);
   EXPECT_EQ(halves[0], by_area[0].power);
 }

@@ -31,12 +31,12 @@ install_missing_packages() {
     > /dev/null
 }
 
-# prepare_build PRESET TARGET: packages, configuration, build. Quick when nothing changed. The environment's CSX600_LEVELS
+# prepare_build PRESET TARGET...: packages, configuration, build. Quick when nothing changed. The environment's CSX600_LEVELS
 # says which levels of x86-64 kernels are built for (firmware/levels.cmake).
 prepare_build() {
   install_missing_packages
   [ -f "build/$1/build.ninja" ] || cmake --preset "$1" ${CSX600_LEVELS:+-DCSX600_LEVELS="$CSX600_LEVELS"} > /dev/null
-  cmake --build --preset "$1" --target "$2"
+  cmake --build --preset "$1" --target "${@:2}"
 }
 
 # print_time WHAT: prints the time since the script began.

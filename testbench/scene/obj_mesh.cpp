@@ -31,6 +31,30 @@ struct ObjContent {
   Notes notes;
 };
 
+/// Whether a line holds a face. "fo" is the older word for "f" (Wavefront's description of the format,
+/// version 3.0).
+bool is_face(std::string_view keyword) {
+  return keyword == "f" || keyword == "fo";
+}
+
+/// Lines of the same description that change nothing of a mesh's triangles and materials: names, groups, how
+/// a program displays or approximates, and what belongs to free-form curves, whose own lines are noted.
+constexpr std::string_view kLinesWithoutEffect[] = {
+    "g",         "o",    "s",     "mg",     "bevel", "c_interp", "d_interp", "lod",   "shadow_obj",
+    "trace_obj", "bmat", "con",   "cstype", "ctech", "deg",      "end",      "hole",  "parm",
+    "scrv",      "sp",   "stech", "step",   "trim",  "vp",       "maplib",   "usemap"};
+
+bool is_without_effect(std::string_view keyword) {
+  return keyword.empty() || keyword.front() == '#' ||
+         std::find(std::begin(kLinesWithoutEffect), std::end(kLinesWithoutEffect), keyword) !=
+             std::end(kLinesWithoutEffect);
+}
+
+/// A line of numbers up to its comment, which needs no blank before it.
+std::string_view without_any_comment(std::string_view line) {
+  return line.substr(0, line.find('#'));
+}
+
 /// A place in an OBJ file.
 class ObjPlace {
  public:
@@ -67,7 +91,7 @@ class ObjContentReader {
       const std::string_view keyword = take_word(line);
       if (keyword == "v")
         add_vertex(line);
-      else if (keyword == "f")
+      else if (is_face(keyword))
         ++content_.faces;
       else if (keyword == "vn")
         add_normal(line);
@@ -80,7 +104,7 @@ class ObjContentReader {
  private:
   /// x y z, x y z w, x y z r g b, or x y z r g b a. The weight w and the opacity a are not used.
   void add_vertex(std::string_view line) {
-    const std::string_view found = trimmed(line = without_comment(line));
+    const std::string_view found = trimmed(line = without_any_comment(line));
     double numbers[7];
     int count = 0;
     for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
@@ -220,8 +244,8 @@ class ObjFaceReader {
  private:
   void read_line(std::string_view line) {
     const std::string_view keyword = take_word(line);
-    if (keyword == "f")
-      add_face(line);
+    if (is_face(keyword))
+      add_face(without_any_comment(line));
     else if (keyword == "v")
       ++vertices_so_far_;
     else if (keyword == "vt")
@@ -236,6 +260,9 @@ class ObjFaceReader {
       note("a line is left out");
     else if (keyword == "curv" || keyword == "curv2" || keyword == "surf")
       note("a free-form curve or surface is left out");
+    else if (keyword != "mtllib" && !is_without_effect(keyword))
+      mesh_.notes.add_at("an unknown keyword of OBJ is left out",
+                         [&] { return place_.text() + ": " + std::string(keyword.substr(0, 40)); });
   }
 
   void use_material(std::string_view line) {
@@ -250,7 +277,6 @@ class ObjFaceReader {
     polygon_.clear();
     corners_.clear();
     for (std::string_view corner = take_word(line); !corner.empty(); corner = take_word(line)) {
-      if (corner.front() == '#') break;
       corners_.push_back(corner_of(corner));
       polygon_.push_back(content_.vertices[corners_.back().vertex]);
     }

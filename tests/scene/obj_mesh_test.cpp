@@ -230,6 +230,26 @@ TEST_F(ObjMeshTest, points_lines_and_curves_are_counted_in_notes) {
                                     file + "12: a free-form curve or surface is left out"}));
 }
 
+TEST_F(ObjMeshTest, a_line_that_it_does_not_know_is_noted_and_what_changes_no_triangle_is_not) {
+  const Mesh mesh =
+      load(std::string(kSquare) +
+           "usemtl grey\ng a\no b\ns 1\nlod 2\nvp 1 2\n# V\n\nV 1 0 0\ncall part.obj\nF 1 2 3\nf 1 2 3\n");
+  EXPECT_EQ(mesh.notes.lines(),
+            std::vector<std::string>{directory_.string() +
+                                     "/mesh.obj:14: V: an unknown keyword of OBJ is left out, 3 times"});
+  EXPECT_EQ(mesh.triangles.size(), 1U);
+}
+
+TEST_F(ObjMeshTest, the_older_word_for_a_face_is_read) {
+  EXPECT_EQ(load(std::string(kSquare) + "usemtl grey\nfo 1 2 3 4\nf 1 2 3\n").triangles.size(), 3U);
+}
+
+TEST_F(ObjMeshTest, a_comment_needs_no_blank_behind_a_number) {
+  const Mesh mesh = load("v 0 0 0# a\nv 1 0 0.5#\nv 0 1 0\nf 1 2 3#4 5\n");
+  ASSERT_EQ(mesh.triangles.size(), 1U);
+  EXPECT_EQ(mesh.triangles[0].vertex[1], glm::dvec3(1.0, 0.0, 0.5));
+}
+
 TEST_F(ObjMeshTest, faces_without_a_known_material_have_the_default_one_and_are_counted) {
   const std::string note =
       ": a face has the default material of reflectance 0.8 (material of [[mesh]] sets another), 2 times";

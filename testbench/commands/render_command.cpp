@@ -142,6 +142,7 @@ std::optional<PreparedRender> RenderCommand::prepare(Ranks& ranks) const {
     size.require_valid();
     Scene loaded = size.resized(scene.load());
     if (ranks.is_first()) outputs.require_no_input(inputs(loaded));
+    request.triangles = loaded.triangles.size();
     request.traversal_reason = choose_tree_for(loaded, request.options);
     std::vector<double> of_pixels = importance.importance(loaded.film, request.options.work.samples);
     if (!passes.any()) list_samples(of_pixels, request);
@@ -243,6 +244,7 @@ void RenderCommand::run() {
   size.require_valid();
   const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs(loaded), observation.outputs());
+  request.triangles = loaded.triangles.size();
   request.traversal_reason = choose_tree_for(loaded, request.options);
   list_samples(importance.importance(loaded.film, request.options.work.samples), request);
   const InterruptGuard interrupt;

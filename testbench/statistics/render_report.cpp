@@ -115,6 +115,7 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   json["scene"] = request.scene;
   json["width"] = result.film.size().width;
   json["height"] = result.film.size().height;
+  if (request.triangles > 0) json["triangles"] = request.triangles;
   json["firmware"] = firmware_json(request.options);
   if (!request.traversal_reason.empty()) json["traversal_chosen_because"] = request.traversal_reason;
   json["machine"] = request.native ? "native" : "chip";
@@ -137,6 +138,7 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
 std::string render_table(const RenderRequest& request, const RenderResult& result) {
   Rows rows;
   const path_tracer::RunCounts& counts = result.counts;
+  if (request.triangles > 0) rows.emplace_back("triangles", text("%.0f", double(request.triangles)));
   rows.emplace_back("path segments", text("%.0f", double(counts.segments)) +
                                          text(" of %.0f paths", double(counts.paths)) +
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));

@@ -14,6 +14,7 @@ struct RenderRequest {
   RenderOptions options;
   bool native = false;
   std::string traversal_reason = {};  ///< why the traversal was chosen; empty when the user gave it
+  std::size_t triangles = 0;          ///< of the scene with lights that were added; 0: not said
   std::string importance = {};        ///< file of the importance map, if there is one
   bool in_own_process = false;        ///< of one of several renders: SystemC elaborates once a process
 };

@@ -65,13 +65,21 @@ void require_counters(const Json& json, const std::string& origin, bool with_sim
 /// What the values of a statistics file may be, beside the counters'.
 const Schema& run_schema() {
   static const Schema schema = {
-      {"format", JsonType::text},        {"scene", JsonType::text},
-      {"width", JsonType::count},        {"height", JsonType::count},
-      {"firmware", JsonType::object},    {"firmware.samples", JsonType::count},
-      {"firmware.*", JsonType::scalar},  {"machine", JsonType::text},
-      {"timing", JsonType::text},        {"chip_preset", JsonType::text},
-      {"chip_config", JsonType::object}, {"image_sha256", JsonType::text},
-      {"counts", JsonType::object},      {"segments", JsonType::count},
+      {"format", JsonType::text},
+      {"scene", JsonType::text},
+      {"width", JsonType::count},
+      {"height", JsonType::count},
+      {"triangles", JsonType::count, false},
+      {"firmware", JsonType::object},
+      {"firmware.samples", JsonType::count},
+      {"firmware.*", JsonType::scalar},
+      {"machine", JsonType::text},
+      {"timing", JsonType::text},
+      {"chip_preset", JsonType::text},
+      {"chip_config", JsonType::object},
+      {"image_sha256", JsonType::text},
+      {"counts", JsonType::object},
+      {"segments", JsonType::count},
       {"rays", JsonType::count},
   };
   return schema;

@@ -30,6 +30,8 @@ find_meshes() {
   for pattern; do find "$folder" -type f -iname "$pattern"; done | LC_ALL=C sort
 }
 
+statistics=$(mktemp)
+trap 'rm -f "$statistics"' EXIT
 loaded=0
 files=0
 same=0
@@ -37,9 +39,9 @@ printf '%-60s %10s %10s  %s\n' file triangles second compared
 find_meshes "$@" | {
   while IFS= read -r file; do
     files=$((files + 1))
-    output=$(timeout 120 "$program" render "$file" --allow-outside --native --samples 1 --size 8x8 2>&1)
+    output=$(timeout 120 "$program" render "$file" --allow-outside --native --samples 1 --size 8x8 --stats "$statistics" 2>&1)
     code=$?
-    triangles=$(printf '%s\n' "$output" | sed -n 's/.*(\([0-9]*\) triangles: .*/\1/p')
+    triangles=$(sed -n 's/^  "triangles": \([0-9]*\),$/\1/p' "$statistics")
     second=$(second_count "$file")
     if [ "$code" -ne 0 ]; then
       reason=$(printf '%s\n' "$output" | grep '^csx600: ' | grep -v '^csx600: note' | head -n 1)
@@ -50,6 +52,7 @@ find_meshes "$@" | {
     left_out=$(printf '%s\n' "$output" | sed -n 's/^csx600: note: .*: a triangle .* is left out\(, \([0-9]*\) times\)\{0,1\}$/\2/p' |
       awk '{ sum += $1 == "" ? 1 : $1 } END { print sum + 0 }')
     added=$(printf '%s\n' "$output" | grep -c 'square light .* is added')
+    : "${triangles:?the statistics of $file name no triangles}"
     total=$((triangles + left_out - 2 * added))
     verdict=-
     if [ -n "$second" ]; then

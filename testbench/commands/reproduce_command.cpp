@@ -7,6 +7,7 @@
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
+#include "testbench/commands/reproduce_claims.hpp"
 #include "testbench/paper/paper_runs.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/json_file.hpp"
@@ -30,10 +31,12 @@ struct ReproduceCommand {
   ChipOptions chip;
   TimingOption timing;
   LevelOption level;
+  SizeOption size;
   int samples = 4;
   bool check_hazards = false;
   int jobs = 1;
   bool image = false;
+  bool claims = false;
   OutputFiles outputs;
 
   void run() const;
@@ -42,6 +45,7 @@ struct ReproduceCommand {
   RenderOptions make_options() const;
   std::vector<Cell> measure(const Scene& loaded, const RenderOptions& options) const;
   void measure_image(const Scene& loaded, RenderOptions options) const;
+  void judge(const Scene& loaded, const RenderOptions& options) const;
 };
 
 std::vector<Cell> ReproduceCommand::measure(const Scene& loaded, const RenderOptions& options) const {
@@ -109,6 +113,13 @@ void ReproduceCommand::measure_image(const Scene& loaded, RenderOptions options)
       double(result.counts.segments) / result.cpu_seconds / (kPaperImageSegments / kPaperImageSeconds));
 }
 
+void ReproduceCommand::judge(const Scene& loaded, const RenderOptions& options) const {
+  const std::vector<JudgedClaim> judged = judge_claims(loaded, options, jobs);
+  std::printf("%s at %d x %d, %d samples a pixel; chip %s\n\n%s", loaded.name.c_str(), loaded.film.width,
+              loaded.film.height, samples, options.chip.preset.c_str(), claims_text(judged).c_str());
+  outputs.write("--json", [&] { return json_text(claims_json(judged, options), 2) + "\n"; });
+}
+
 Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
   Json json;
   json["format"] = "csx600-reproduce-1";
@@ -142,10 +153,11 @@ RenderOptions ReproduceCommand::make_options() const {
 void ReproduceCommand::run() const {
   outputs.require_writable();
   const RenderOptions options = make_options();
-  const Scene loaded = scene.load();
+  size.require_valid();
+  const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded));
-  if (image) {
-    measure_image(loaded, options);
+  if (image || claims) {
+    image ? measure_image(loaded, options) : judge(loaded, options);
     print_notes(loaded.notes);
     return;
   }
@@ -171,11 +183,16 @@ void add_reproduce_command(CLI::App& app) {
   state->chip.add_to(command, "paper");
   state->timing.add_to(command);
   state->level.add_to(command);
+  state->size.add_to(command);
   add_samples_option(command, state->samples);
   add_jobs_option(command, state->jobs);
   command.add_flag("--image", state->image, "Render the paper's image instead and compare its time");
+  command
+      .add_flag("--claims", state->claims,
+                "Judge what the paper says, claim by claim, by fresh runs (--size 120x120 takes a minute)")
+      ->excludes("--image");
   add_check_hazards_flag(command, state->check_hazards);
-  state->outputs.add_to(command, "--json", "Also write the cells to this file");
+  state->outputs.add_to(command, "--json", "Also write the cells, or the claims, to this file");
   command.callback([state] { state->run(); });
 }
 

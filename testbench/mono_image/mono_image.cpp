@@ -63,9 +63,9 @@ double reach_of(const Scene& scene) {
 /// Triangles, faces and planes as the image's parts need them.
 struct Triangles {
   const Scene& scene;
-  const CoincidentTriangles coincident{find_coincident_triangles(scene.triangles)};
+  const CoincidentTriangles coincident{find_coincident_triangles(scene.triangles, scene.rounded_at)};
   const std::vector<std::int32_t> faces{number_faces(scene.triangles, coincident)};
-  const SceneLayers layers{scene.triangles, coincident, faces};
+  const SceneLayers layers{scene, coincident, faces};
 
   explicit Triangles(const Scene& of) : scene(of) {}
   std::size_t count() const { return scene.triangles.size(); }

@@ -54,11 +54,12 @@ std::vector<std::vector<std::size_t>> by_number(const std::vector<std::int32_t>&
 
 }  // namespace
 
-SceneLayers::SceneLayers(const std::vector<Triangle>& triangles, const CoincidentTriangles& coincident,
+SceneLayers::SceneLayers(const Scene& scene, const CoincidentTriangles& coincident,
                          const std::vector<std::int32_t>& faces) {
+  const std::vector<Triangle>& triangles = scene.triangles;
   if (coincident.groups == 0) return;
   const glm::dvec3 anchor = triangles[0].vertex[0];
-  const double tolerance = size_of(triangles).plane_tolerance();
+  const double tolerance = size_of(triangles, scene.rounded_at).plane_tolerance();
   layers_ = {true, as_record(anchor)};
   plane_of_.assign(triangles.size(), kNoPlane);
   // First a plane for each face with coincident triangles, then one for each group that is not in such a

@@ -16,7 +16,7 @@ inline constexpr std::int32_t kNoPlane = -1;
 /// that lies farther away keeps a plane of its own.
 class SceneLayers {
  public:
-  SceneLayers(const std::vector<Triangle>& triangles, const CoincidentTriangles& coincident,
+  SceneLayers(const Scene& scene, const CoincidentTriangles& coincident,
               const std::vector<std::int32_t>& faces);
 
   const path_tracer::Layers& layers() const { return layers_; }

@@ -307,10 +307,10 @@ CoincidentTriangles numbered(JoinedSets& sets, std::size_t triangles) {
 
 }  // namespace
 
-CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles) {
+CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles, double rounded_at) {
   JoinedSets sets(triangles.size());
   if (triangles.size() < 2) return numbered(sets, triangles.size());
-  const SceneSize size = size_of(triangles);
+  const SceneSize size = size_of(triangles, rounded_at);
   const std::vector<PlaneEntry> entries = entries_by_cell(triangles, size);
   for (std::size_t first = 0, end; first < entries.size(); first = end) {
     end = first + 1;
@@ -325,7 +325,7 @@ CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& trian
 }
 
 void order_coincident_triangles(Scene& scene, const std::string& file) {
-  const CoincidentTriangles found = find_coincident_triangles(scene.triangles);
+  const CoincidentTriangles found = find_coincident_triangles(scene.triangles, scene.rounded_at);
   scene.coincident_triangles = found.triangles;
   if (found.triangles == 0) return;
   scene.notes.add(

@@ -21,7 +21,8 @@ struct CoincidentTriangles {
 };
 
 /// Finds them in a time of about n log n.
-CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles);
+/// @param rounded_at Scene::rounded_at
+CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles, double rounded_at = 0);
 
 /// If triangles of the scene coincide, notes how many, and lets those that emit come first, in their order:
 /// of surfaces that are equally far along a ray and face it, the first in the scene is seen.

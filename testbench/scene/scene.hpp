@@ -62,9 +62,12 @@ struct Scene {
   CornerAttributes corners;         ///< of the triangles
   std::vector<Texture> textures;    ///< that the materials use
   Environment environment;
-  std::vector<Light> lights;                 ///< that are no triangles
-  std::size_t degenerate_triangles = 0;      ///< number of triangles of zero area that the loader dropped
-  std::size_t coincident_triangles = 0;      ///< number that lie on others, as the loader found
+  std::vector<Light> lights;             ///< that are no triangles
+  std::size_t degenerate_triangles = 0;  ///< number of triangles of zero area that the loader dropped
+  std::size_t coincident_triangles = 0;  ///< number that lie on others, as the loader found
+  /// Vertices were rounded to doubles where coordinates had this size, in the scene's unit, if it is more
+  /// than what they have (normalised()).
+  double rounded_at = 0;
   Notes notes;                               ///< what the loader left out or replaced
   std::vector<std::filesystem::path> files;  ///< that the loader read or that these name
 };

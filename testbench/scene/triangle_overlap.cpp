@@ -37,7 +37,7 @@ const glm::dvec3& farthest(const std::vector<glm::dvec3>& points, const Distance
 
 }  // namespace
 
-SceneSize size_of(const std::vector<Triangle>& triangles) {
+SceneSize size_of(const std::vector<Triangle>& triangles, double rounded_at) {
   if (triangles.empty()) return {};
   glm::dvec3 lower = triangles[0].vertex[0];
   glm::dvec3 upper = lower;
@@ -49,7 +49,7 @@ SceneSize size_of(const std::vector<Triangle>& triangles) {
   const glm::dvec3 most = glm::max(glm::abs(lower), glm::abs(upper));
   const glm::dvec3 box = upper - lower;
   const double extent = std::hypot(box.x, box.y, box.z);
-  return {extent, std::max({extent, most.x, most.y, most.z})};
+  return {extent, std::max({extent, most.x, most.y, most.z, rounded_at})};
 }
 
 FittedPlane fit_plane(const std::vector<glm::dvec3>& points) {

@@ -10,7 +10,7 @@ namespace testbench {
 /// Sizes that a scene's rounding is relative to.
 struct SceneSize {
   double extent = 0;  ///< length of the diagonal of the triangles' box
-  double reach = 0;   ///< at least the extent and at least the size of any coordinate
+  double reach = 0;   ///< at least the extent and at least the size of any coordinate when it was rounded
 
   /// Vertices whose coordinates were rounded to doubles lie within 2^-52 of `reach` of a plane, and hits
   /// within 10 times 2^-53; this leaves room for coordinates that took several operations. It also is the
@@ -20,7 +20,8 @@ struct SceneSize {
   double least_height() const { return 0x1p-34 * reach; }
 };
 
-SceneSize size_of(const std::vector<Triangle>& triangles);
+/// @param rounded_at Scene::rounded_at
+SceneSize size_of(const std::vector<Triangle>& triangles, double rounded_at);
 
 /// A plane through a point; the normal has unit length.
 struct FittedPlane {

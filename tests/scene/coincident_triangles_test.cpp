@@ -42,7 +42,7 @@ const Placement kPlacements[] = {{1, 0, false}, {1, 0},   {1e-30, 0},   {1e30, 0
 /// The numbers of the sets that are connected by coincide(), found pair by pair. Those that are too thin to
 /// be told are left out.
 std::vector<std::int32_t> by_pairs(const std::vector<Triangle>& triangles) {
-  const testbench::SceneSize size = size_of(triangles);
+  const testbench::SceneSize size = size_of(triangles, 0.0);
   std::vector<std::size_t> set(triangles.size());
   std::iota(set.begin(), set.end(), std::size_t{0});
   for (std::size_t i = 0; i < triangles.size(); ++i)

@@ -126,6 +126,11 @@ void print_film_notes(const Scene& loaded, const Film& film) {
     print_note(std::to_string(without) + " of " + std::to_string(film.pixel_count()) +
                " pixels have no path and are black");
   if (is_black(film)) print_note("every pixel is black: " + why_black(loaded));
+  if (is_below_single_precision(film))
+    print_note(
+        "every pixel is darker than 1.2e-38, of which the single precision of OpenEXR files keeps fewer "
+        "digits, "
+        "and below 1e-45 none");
 }
 
 /// What all ranks check before they render. An error is the first rank's to say; the others get nothing.

@@ -1,6 +1,7 @@
 #include "testbench/film/black_film.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -107,6 +108,15 @@ bool is_black(const Film& film) {
   for (int pixel = 0; pixel < film.pixel_count(); ++pixel)
     if (film.mean(pixel) != glm::dvec3(0.0)) return false;
   return true;
+}
+
+bool is_below_single_precision(const Film& film) {
+  double largest = 0.0;
+  for (int pixel = 0; pixel < film.pixel_count() && largest < double(FLT_MIN); ++pixel) {
+    const glm::dvec3 mean = film.mean(pixel);
+    largest = std::max({largest, mean.x, mean.y, mean.z});
+  }
+  return largest > 0.0 && largest < double(FLT_MIN);
 }
 
 std::string why_black(const Scene& scene) {

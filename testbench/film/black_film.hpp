@@ -10,6 +10,9 @@ namespace testbench {
 /// Whether every pixel is zero. Ends at the first that is not.
 bool is_black(const Film& film);
 
+/// Whether some pixel is not zero, and all are smaller than any normal number in single precision.
+bool is_below_single_precision(const Film& film);
+
 /// Why a film of the scene may be all black, as a clause: what a few rays through the film meet, and whether
 /// any light faces what they meet. An estimate by brute force, for films that are black only.
 std::string why_black(const Scene& scene);

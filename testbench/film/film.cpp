@@ -15,7 +15,8 @@
 namespace testbench {
 namespace {
 
-constexpr int kMaxScaleExponent = 40;
+/// Squares of the smallest sample and sums of the largest squares stay within a double's range.
+constexpr int kMaxScaleExponent = 300;
 constexpr int kLargestSampleExponent = 20;  ///< a sample may be 2^this times the scale
 // 32 bits of samples + 20 (40 for squares) bits of range + 74 (54) bits of fraction = 126 bits.
 constexpr int kSumFractionBits = 74;
@@ -30,7 +31,7 @@ int exponent_of(double scale) {
   const double mantissa = std::frexp(scale, &exponent);
   if (mantissa != 0.5 || std::abs(exponent - 1) > kMaxScaleExponent) {
     throw std::invalid_argument("film scale " + std::to_string(scale) +
-                                " is not a power of two from 2^-40 to 2^40");
+                                " is not a power of two from 2^-300 to 2^300");
   }
   return exponent - 1;
 }

@@ -42,7 +42,7 @@ class Film {
  public:
   static constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 32;
 
-  /// `scale` is a power of two near the scene's largest emission, 2^-40 .. 2^40 (see film_scale()).
+  /// `scale` is a power of two near the scene's largest emission, 2^-300 .. 2^300 (see film_scale()).
   /// Throws std::invalid_argument for any other scale or an empty size, RunError if there is no memory.
   Film(FilmSize size, double scale, FilmSums sums = FilmSums::means_and_variances);
 
@@ -128,8 +128,8 @@ class Film {
 };
 
 /// The scale for a film of this scene: the smallest power of two not below its largest emission, the largest
-/// radiance of its environment and what its lights without area make of surfaces near them, within 2^-40 ..
-/// 2^40.
+/// radiance of its environment and what its lights without area make of surfaces near them, within 2^-300 ..
+/// 2^300. So dim and bright scenes keep as many bits.
 double film_scale(const Scene& scene);
 
 }  // namespace testbench

@@ -199,7 +199,7 @@ constexpr GltfRule kGltfRules[] = {
     {"KHR_lights_punctual.light", "type", required, text_of("directional point spot")},
     {"KHR_lights_punctual.light", "name", optional, text()},
     {"KHR_lights_punctual.light", "color", optional, array(3, 3, number(0))},
-    {"KHR_lights_punctual.light", "intensity", optional, number(0, 1e12)},
+    {"KHR_lights_punctual.light", "intensity", optional, number(0, 1e30)},
     {"KHR_lights_punctual.light", "range", optional, positive()},
     {"KHR_lights_punctual.light", "spot", optional, object("KHR_lights_punctual.light.spot")},
     {"KHR_lights_punctual.light.spot", "innerConeAngle", optional, number(0, 1.5707963267948966)},

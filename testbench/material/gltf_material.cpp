@@ -106,7 +106,7 @@ class GltfMaterialReader {
       if (material_.emission[channel] <= kMaxEmission) continue;
       std::ostringstream found;
       found << "an emission of " << material_.emission[channel];
-      document_.fail(pointer_, found.str(), "0 to 1e12");
+      document_.fail(pointer_, found.str(), "0 to 1e30");
     }
     material_.textures.emission = texture(source_, "emissiveTexture", TexelEncoding::srgb);
   }

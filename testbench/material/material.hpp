@@ -12,8 +12,9 @@ namespace testbench {
 /// The grey of faces for which no file names a material, and of materials for which it names no colour:
 /// linear reflectance of all three channels, as Blender's default material.
 inline constexpr double kDefaultReflectance = 0.8;
-/// The largest radiance that a material may emit: the largest that a Film can hold.
-inline constexpr double kMaxEmission = 1e12;
+/// The largest radiance that a material may emit. Samples that are 2^20 times as bright, the largest that a
+/// film takes, fit the single precision of OpenEXR files.
+inline constexpr double kMaxEmission = 1e30;
 /// What a dielectric of index 1.5 reflects at normal incidence.
 inline constexpr double kDefaultSpecularReflectance = 0.04;
 

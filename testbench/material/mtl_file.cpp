@@ -18,7 +18,7 @@ struct ColourRange {
 };
 
 constexpr ColourRange kReflectanceRange{1.0, "3 numbers from 0 to 1"};
-constexpr ColourRange kEmissionRange{kMaxEmission, "3 numbers from 0 to 1e12"};
+constexpr ColourRange kEmissionRange{kMaxEmission, "3 numbers from 0 to 1e30"};
 
 bool is_one_of(std::string_view word, std::initializer_list<const char*> words) {
   return std::find(words.begin(), words.end(), word) != words.end();

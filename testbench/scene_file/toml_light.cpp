@@ -8,7 +8,7 @@ namespace testbench {
 namespace {
 
 constexpr double kSunDiameterDegrees = 0.53;  // of the sun that the earth has
-constexpr const char* kIntensityAllowed = "three numbers from 0 to 1e12";
+constexpr const char* kIntensityAllowed = "three numbers from 0 to 1e30";
 
 glm::dmat3 rotation_of_angles(const glm::dvec3& degrees) {
   const glm::dvec3 angles = glm::radians(degrees);

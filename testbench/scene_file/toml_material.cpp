@@ -71,7 +71,7 @@ std::vector<MaterialKey> make_material_keys() {
   };
 }
 
-/// "0.25", "1e12"
+/// "0.25", "1e30"
 std::string short_text_of(double number) {
   std::ostringstream text;
   text << number;

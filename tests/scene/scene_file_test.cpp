@@ -257,11 +257,11 @@ TEST_F(SceneFileTest, a_material_is_for_faces_that_have_none) {
   const Scene scene =
       load(std::string(kCamera) +
            "[[mesh]]\nfile = \"bare.obj\"\nmaterial = {reflectance = [0.1, 0.2, 1], emission = [5, 0, "
-           "1e12]}\n[[mesh]]\nfile = \"bare.ply\"\nmaterial.emission = [1, 1, 1]\n[[mesh]]\nfile = "
+           "1e30]}\n[[mesh]]\nfile = \"bare.ply\"\nmaterial.emission = [1, 1, 1]\n[[mesh]]\nfile = "
            "\"a.obj\"\nmaterial.emission = [9, 9, 9]\n");
   ASSERT_EQ(scene.materials.size(), 3U);
   EXPECT_EQ(scene.materials[0].reflectance, glm::dvec3(0.1, 0.2, 1.0));
-  EXPECT_EQ(scene.materials[0].emission, glm::dvec3(5, 0, 1e12));
+  EXPECT_EQ(scene.materials[0].emission, glm::dvec3(5, 0, 1e30));
   EXPECT_EQ(scene.materials[1].reflectance, glm::dvec3(0));
   EXPECT_EQ(scene.materials[2].emission, glm::dvec3(1));
   EXPECT_TRUE(scene.notes.lines().empty());
@@ -269,7 +269,7 @@ TEST_F(SceneFileTest, a_material_is_for_faces_that_have_none) {
   expect_error(mesh + "material = 3\n", {"scene.toml:7", "mesh.material", "a table"});
   expect_error(mesh + "material = {colour = 3}\n", {"mesh.material.colour", "reflectance, emission"});
   expect_error(mesh + "material.reflectance = [0, 0, 1.5]\n", {"mesh.material.reflectance", "1.5", "0 to 1"});
-  expect_error(mesh + "material.emission = [-1, 0, 0]\n", {"mesh.material.emission", "-1", "1e12"});
+  expect_error(mesh + "material.emission = [-1, 0, 0]\n", {"mesh.material.emission", "-1", "1e30"});
 }
 
 TEST_F(SceneFileTest, a_scene_of_the_default_material_without_light_gets_one) {

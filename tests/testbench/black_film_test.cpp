@@ -57,4 +57,13 @@ TEST(BlackFilm, IsBlackUntilAPixelIsNot) {
   EXPECT_FALSE(testbench::is_black(film));
 }
 
+TEST(BlackFilm, MayBeDimmerThanAnImageFileCanSay) {
+  testbench::Film film({3, 2}, 0x1p-130);
+  EXPECT_FALSE(testbench::is_below_single_precision(film)) << "black";
+  film.add(2, {0.0, 1e-39, 0.0});
+  EXPECT_TRUE(testbench::is_below_single_precision(film));
+  film.add(3, {0.0, 0.0, 2e-38});
+  EXPECT_FALSE(testbench::is_below_single_precision(film));
+}
+
 }  // namespace black_film_test

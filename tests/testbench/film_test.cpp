@@ -250,9 +250,23 @@ TEST(FilmScale, is_the_power_of_two_at_or_above_the_largest_emission) {
   EXPECT_EQ(scale_of(17.2), 32.0);
   EXPECT_EQ(scale_of(16.0), 16.0);
   EXPECT_EQ(scale_of(0.3), 0.5);
-  EXPECT_EQ(scale_of(1e-30), 0x1p-40);
-  EXPECT_EQ(scale_of(1e12), 0x1p40);
-  EXPECT_NO_THROW(Film({1, 1}, scale_of(1e12)));
+  EXPECT_EQ(scale_of(0x1p-99), 0x1p-99);
+  EXPECT_EQ(scale_of(1e-200), 0x1p-300);
+  EXPECT_EQ(scale_of(0x1p99), 0x1p99);
+  EXPECT_NO_THROW(Film({1, 1}, scale_of(1e30)));
+}
+
+TEST(FilmScale, keeps_means_and_variances_of_dim_and_of_bright_scenes) {
+  for (const int exponent : {-290, -130, -40, 0, 40, 100}) {
+    const double unit = std::ldexp(1.0, exponent);
+    Film film({1, 1}, unit);
+    ASSERT_TRUE(film.add(0, glm::dvec3(0.1 * unit, 3 * unit, 0x1p19 * unit)));
+    ASSERT_TRUE(film.add(0, glm::dvec3(0.2 * unit, 5 * unit, 0x1p18 * unit)));
+    EXPECT_NEAR(film.mean(0).x / unit, 0.15, 1e-15) << exponent;
+    EXPECT_EQ(film.mean(0).y / unit, 4.0) << exponent;
+    EXPECT_EQ(film.mean(0).z / unit, 0x1.8p18) << exponent;
+    EXPECT_EQ(film.variance_of_mean(0).y / unit / unit, 1.0) << exponent;
+  }
 }
 
 }  // namespace film_test

@@ -67,6 +67,7 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       bins_(make_bins(machine.poly_memory(), config_.bin_blocks)),
       rings_(make_rings(machine, config_, layout.layers)),
       radiance_rings_(make_radiance_rings(machine, config_)),
+      scratchpad_(machine, rings_.loads, config_.scratchpad, layout_),
       search_(make_search(context(rings_))),
       intersection_stage_(context(rings_), search_->rays()),
       hit_binning_(config_.bins_hits() ? std::make_unique<HitBinning>(context(rings_), search_->rays())

@@ -7,6 +7,7 @@
 #include "firmware/path_tracer/pipeline/pass.hpp"
 #include "firmware/path_tracer/pipeline/pass_radiance.hpp"
 #include "firmware/path_tracer/pipeline/ray_search.hpp"
+#include "firmware/path_tracer/pipeline/scratchpad_records.hpp"
 #include "firmware/path_tracer/pipeline/step_pipeline.hpp"
 #include "firmware/path_tracer/stages/intersection_stage.hpp"
 #include "firmware/path_tracer/stages/path_stage.hpp"
@@ -63,6 +64,7 @@ class PathTracer {
   Bins bins_;
   Rings rings_;
   Rings radiance_rings_;
+  ScratchpadRecords scratchpad_;  ///< before the search, which loads resident nodes
   std::unique_ptr<RaySearch> search_;
   IntersectionStage intersection_stage_;
   std::unique_ptr<HitBinning> hit_binning_;  ///< in its place, or null

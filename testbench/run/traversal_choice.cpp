@@ -76,6 +76,7 @@ double fetch_cycles_of_a_triangle(const model::ChipConfig& chip) {
 int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip, bool has_layers) try {
   ProgramConfig least = program;
   if (least.tree.resident_nodes == kAsManyAsFit) least.tree.resident_nodes = 1;
+  least.scratchpad = path_tracer::Scratchpad::none;  // takes nothing of a PE's SRAM
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1, has_layers}, chip.chip.pes, least);
   constexpr int kPlenty = 1 << 18;
   NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);

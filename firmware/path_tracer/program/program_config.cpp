@@ -22,6 +22,8 @@ void validate(const ProgramConfig& config) {
   // Paper, section 3.3: "the bins must be at least n * (number of PEs) in length".
   require(config.n <= config.bin_blocks, "n", std::to_string(config.n),
           "at most the bin length, " + std::to_string(config.bin_blocks) + " blocks");
+  require(config.uses_tree() || config.scratchpad != Scratchpad::nodes, "scratchpad", "nodes",
+          "none, triangles or fitting with traversal brute_force, which has no nodes");
   const NodeLayout& layout = config.tree.layout;
   require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
           "4 or 8 with node_format quantised8");

@@ -57,6 +57,14 @@ enum class Traversal : std::uint8_t {
   shared_treelets,
 };
 
+/// Which arrays of the scene the firmware copies to the memory on the chip, as it starts.
+enum class Scratchpad : std::uint8_t {
+  none,
+  nodes,      ///< of the tree
+  triangles,  ///< their records for the intersection test
+  fitting,    ///< nodes, triangles, surfaces and lights, in this order, each as a whole if it fits
+};
+
 inline constexpr int kMaxBuffers = 8;
 inline constexpr int kMaxLightCandidates = 8;
 
@@ -92,6 +100,7 @@ struct ProgramConfig {
   /// Pixels from one camera ray to the next, cyclic over the film; must have no common divisor with the
   /// number of pixels. The image is the same; only the distance between rays of one block changes.
   int pixel_stride = 1;
+  Scratchpad scratchpad = Scratchpad::none;
   Traversal traversal = Traversal::brute_force;
   TreeShape tree;
 

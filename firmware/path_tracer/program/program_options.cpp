@@ -151,6 +151,10 @@ Options bins() {
               "shading", Shading::present_lobes, kShadingNames,
               "hits that are shaded together: blocks of slots, for every lobe or for those present; or bins "
               "of hits, by their material's lobes, or by these and its textures"),
+          choice<&ProgramConfig::scratchpad>(
+              "scratchpad", Scratchpad::none, kScratchpadNames,
+              "arrays of the scene that the firmware copies to the memory on the chip as it starts; fitting: "
+              "nodes, triangles, surfaces, lights, each if it fits as a whole"),
           integer<&ProgramConfig::pixel_stride>(
               "pixel_stride", "pixels", 1, {1, kMaxStride},
               "from one camera ray to the next: 1 in order, more to shuffle; the image is the same")};

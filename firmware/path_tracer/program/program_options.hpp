@@ -20,6 +20,7 @@ inline constexpr std::array kSamplerNames = {"philox", "sobol"};
 inline constexpr std::array kLightSamplingNames = {"area", "solid_angle"};
 inline constexpr std::array kEstimatorNames = {"light", "mis", "per_lobe"};
 inline constexpr std::array kShadingNames = {"every_lobe", "present_lobes", "material_bins", "texture_bins"};
+inline constexpr std::array kScratchpadNames = {"none", "nodes", "triangles", "fitting"};
 inline constexpr std::array kTraversalNames = {"brute_force", "temporary_bin", "refill",
                                                "lock_step",   "packets",       "shared_treelets"};
 inline constexpr std::array kNodeFormatNames = {"fp64", "fp32", "quantised8"};
@@ -38,6 +39,9 @@ inline const char* name_of(Estimator estimator) {
 }
 inline const char* name_of(Shading shading) {
   return kShadingNames.at(std::size_t(shading));
+}
+inline const char* name_of(Scratchpad scratchpad) {
+  return kScratchpadNames.at(std::size_t(scratchpad));
 }
 inline const char* name_of(Traversal traversal) {
   return kTraversalNames.at(std::size_t(traversal));

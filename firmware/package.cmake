@@ -5,10 +5,15 @@ include(CMakePackageConfigHelpers)
 set(CSX600_FIRMWARE_SOURCES ${PROJECT_SOURCE_DIR})
 include(firmware/add_firmware.cmake)
 
+# The examples as plug-ins, which `csx600 run dgemm` finds by their names: beside the program in the build tree, in
+# lib/csx600 when installed (testbench/plug_in/firmware_path.cpp).
+add_subdirectory(firmware/examples/plug_ins)
+
 set(headers ${CMAKE_INSTALL_INCLUDEDIR}/csx600)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/csx600)
 
 install(TARGETS csx600 COMPONENT program)
+install(TARGETS ${example_plug_ins} LIBRARY DESTINATION lib/csx600 COMPONENT program)
 install(TARGETS csx600_cn EXPORT csx600 COMPONENT development)
 install(EXPORT csx600 NAMESPACE csx600:: DESTINATION ${package} FILE csx600Targets.cmake COMPONENT development)
 install(DIRECTORY firmware/cn firmware/plug_in DESTINATION ${headers}/firmware COMPONENT development
@@ -44,5 +49,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME csx600-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "csx600 (= ${PROJECT_VERSION}), g++ (>= 4:12), cmake (>= 3.25), pkg-config, binutils, libsleef-dev")
+  "csx600 (= ${PROJECT_VERSION}), g++ (>= 4:12), cmake (>= 3.25), make | ninja-build, pkg-config, binutils, libsleef-dev")
 include(CPack)

@@ -55,10 +55,27 @@ void HazardChecker::kernel_begins(const char* kernel) {
 
 void HazardChecker::touches_poly(Access access, cn::PolySpan bytes, int first_pe,
                                  std::uint32_t enabled) noexcept {
-  if (!timed_ || !hazard_.empty()) return;
+  if (!hazard_.empty()) return;
+  if (enabled != 0 && !is_in_sram(bytes)) {
+    hazard_ = opening(true) + "kernel '" + kernel_ + "' " + verb(access) + " poly bytes " +
+              std::to_string(bytes.offset_bytes) + ".." +
+              std::to_string(bytes.offset_bytes + bytes.size_bytes - 1) + " of PE " +
+              std::to_string(first_pe + __builtin_ctz(enabled)) + ", whose SRAM has " +
+              std::to_string(sram_bytes());
+    return;
+  }
+  if (!timed_) return;
   const PolyOccupancy::Conflict conflict = occupancy_.find(access, bytes, first_pe, enabled);
   if (conflict.pe >= 0)
     found_in_poly(opening(true) + "kernel '" + kernel_ + "' " + verb(access) + " ", access, bytes, conflict);
+}
+
+int HazardChecker::sram_bytes() const {
+  return machine_.poly_memory().capacity_bytes() + cn::PolyMemory::kReservedBytes;
+}
+
+bool HazardChecker::is_in_sram(cn::PolySpan bytes) const {
+  return bytes.offset_bytes >= 0 && bytes.offset_bytes <= sram_bytes() - bytes.size_bytes;
 }
 
 void HazardChecker::kernel_is_silent() noexcept {

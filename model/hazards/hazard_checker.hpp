@@ -32,6 +32,8 @@ namespace model {
 /// hold in poly memory belong to what it reads, as the engine asks the PEs one after the other (US
 /// 7,363,472).
 ///
+/// An access of a kernel outside the PEs' SRAM is found, too, whatever it does to the simulator afterwards.
+///
 /// Untimed work sees all data at once by design and is not judged. A save may overwrite what untimed work has
 /// seen of an earlier save before that one was waited for: saves land in their order. What a kernel reads of
 /// mono memory is judged where the control unit asks for it (Machine::read_mono).
@@ -52,6 +54,8 @@ class HazardChecker : public cn::AccessObserver {
   /// not be able to stop: the next event of the firmware does, or throw_if_found().
   void host_touches_mono(cn::Access access, const MonoRange& range) noexcept;
   void throw_if_found() const;
+  /// The first hazard; empty when there is none so far.
+  const std::string& hazard() const { return hazard_; }
 
   std::size_t outstanding() const { return outstanding_.size(); }
   /// Transfers with data so far.
@@ -103,6 +107,8 @@ class HazardChecker : public cn::AccessObserver {
     MonoRange range;
   };
 
+  int sram_bytes() const;  ///< of a PE
+  bool is_in_sram(cn::PolySpan bytes) const;
   bool is_over(const Request& request) const;
   void release_if_over(cn::Semaphore semaphore);
   std::optional<cn::PolySpan> poly_addresses(const cn::MonoPlaces& places) const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/cn/machine.hpp"
+#include "firmware/plug_in/counter.hpp"
 #include "firmware/plug_in/mono_buffer.hpp"
 #include "firmware/plug_in/option.hpp"
 
@@ -30,9 +31,9 @@ struct Work {
   std::string unit = {};
 };
 
-/// A firmware that `csx600 run` loads. Its options and buffers are members that list themselves here. The
-/// program gives options their values and calls prepare(); places the buffers in mono memory and uploads;
-/// calls run() on the chip; downloads; calls check().
+/// A firmware that `csx600 run` loads. Its options, buffers and counters are members that list themselves
+/// here. The program gives options their values and calls prepare(); places the buffers in mono memory and
+/// uploads; calls run() on the chip; downloads; calls check().
 class Firmware {
  public:
   Firmware(std::string name, std::string meaning) : name_(std::move(name)), meaning_(std::move(meaning)) {}
@@ -52,14 +53,17 @@ class Firmware {
   const std::string& meaning() const { return meaning_; }
   const std::vector<OptionBase*>& options() const { return options_; }
   const std::vector<MonoBufferBase*>& buffers() const { return buffers_; }
+  const std::vector<const Counter*>& counters() const { return counters_; }
   void add(OptionBase& option) { options_.push_back(&option); }
   void add(MonoBufferBase& buffer) { buffers_.push_back(&buffer); }
+  void add(const Counter& counter) { counters_.push_back(&counter); }
 
  private:
   std::string name_;
   std::string meaning_;
   std::vector<OptionBase*> options_;
   std::vector<MonoBufferBase*> buffers_;
+  std::vector<const Counter*> counters_;
 };
 
 /// The author of a firmware defines this function. csx600_add_firmware() compiles it, and all that it calls,

@@ -12,6 +12,10 @@ namespace plug_in {
 /// What the host does with a buffer: before the firmware starts, and after it has ended.
 enum class Use : std::uint8_t { scratch, upload, download, upload_and_download };
 
+/// The memory that a buffer lies in. The one on the chip is small and quick, and read beside the other
+/// (cn::Machine::scratchpad()).
+enum class Memory : std::uint8_t { ddr, on_chip_sram };
+
 /// A buffer in mono memory and its copy on the host, as the program that runs the firmware sees it.
 class MonoBufferBase {
  public:
@@ -26,12 +30,16 @@ class MonoBufferBase {
   virtual void* host_bytes() = 0;
   virtual std::uint64_t size_bytes() const = 0;
 
+  Memory memory() const { return memory_; }
+  /// To be called by prepare(), at the latest.
+  void put_in(Memory memory) { memory_ = memory; }
   cn::MonoAddress address() const { return address_; }
   void place_at(cn::MonoAddress address) { address_ = address; }
 
  private:
   std::string name_;
   Use use_;
+  Memory memory_ = Memory::ddr;
   cn::MonoAddress address_ = 0;
 };
 

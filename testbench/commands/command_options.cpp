@@ -98,6 +98,14 @@ cn::Level LevelOption::level() const {
                    ", this build on this machine has " + allowed);
 }
 
+void TimeLimitOption::add_to(CLI::App& command) {
+  in_range(
+      command.add_option("--time-limit", seconds_,
+                         "Seconds after which a run that has not ended fails, for firmware that never does"),
+      1, 1000000)
+      ->default_str("none");
+}
+
 void ReachOption::add_to(CLI::App& command) {
   command.add_flag("--allow-outside", is_outside_allowed_,
                    "Let a scene read files that do not lie below its own folder");

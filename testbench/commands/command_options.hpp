@@ -75,6 +75,16 @@ void add_jobs_option(CLI::App& command, int& jobs);
 /// --check-hazards.
 void add_check_hazards_flag(CLI::App& command, bool& check_hazards);
 
+/// --time-limit: seconds of the wall clock that a run may take.
+class TimeLimitOption {
+ public:
+  void add_to(CLI::App& command);
+  double seconds() const { return seconds_; }  ///< 0: no limit
+
+ private:
+  int seconds_ = 0;
+};
+
 /// --allow-outside: how far scenes may reach. Every command that loads scenes has it.
 class ReachOption {
  public:

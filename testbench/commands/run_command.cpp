@@ -1,16 +1,21 @@
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/exit_codes.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/commands/wave_options.hpp"
 #include "testbench/observe/observation.hpp"
+#include "testbench/plug_in/firmware_path.hpp"
 #include "testbench/plug_in/plug_in_run.hpp"
 #include "testbench/plug_in/shared_library.hpp"
 #include "testbench/statistics/statistics_file.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/standard_output.hpp"
+#include "testbench/system/time_limit.hpp"
 
 namespace testbench {
 namespace {
@@ -23,6 +28,7 @@ struct RunCommand {
   LevelOption level;
   bool native = false;
   bool check_hazards = false;
+  TimeLimitOption limit;
   OutputFiles outputs;
   ObservationOption observation;
 
@@ -31,6 +37,7 @@ struct RunCommand {
  private:
   PlugInOptions options() const;
   std::unique_ptr<plug_in::Firmware> make_firmware() const;
+  PlugInResult run_limited(plug_in::Firmware& firmware, const PlugInOptions& options) const;
 };
 
 PlugInOptions RunCommand::options() const {
@@ -45,7 +52,7 @@ PlugInOptions RunCommand::options() const {
   outputs.require_writable(observation.outputs());
   require_writable(options.observation, options.chip);
   std::vector<InputName> inputs = chip.inputs();
-  inputs.emplace_back("the firmware", library);
+  inputs.emplace_back("the firmware", firmware_path(library));
   outputs.require_no_input(inputs, observation.outputs());
   return options;
 }
@@ -56,6 +63,14 @@ std::unique_ptr<plug_in::Firmware> RunCommand::make_firmware() const {
   return check_hazards ? plug_in.make_observed() : plug_in.make(chosen);
 }
 
+PlugInResult RunCommand::run_limited(plug_in::Firmware& firmware, const PlugInOptions& options) const {
+  const TimeLimit until(limit.seconds(), [](const std::string& message) {
+    print_error(message);
+    std::_Exit(kRunFailed.code);
+  });
+  return run_plug_in(firmware, options);
+}
+
 void RunCommand::run() {
   const std::unique_ptr<plug_in::Firmware> firmware = make_firmware();
   if (own_options == std::vector<std::string>{"--help"}) {
@@ -64,7 +79,7 @@ void RunCommand::run() {
   }
   set_options(*firmware, own_options);
   const PlugInOptions with = options();
-  const PlugInResult result = run_plug_in(*firmware, with);
+  const PlugInResult result = run_limited(*firmware, with);
   outputs.write("--stats", [&] {
     return statistics_for_file(outputs.path("--stats"), plug_in_statistics(*firmware, with, result));
   });
@@ -75,10 +90,14 @@ void RunCommand::run() {
 }  // namespace
 
 void add_run_command(CLI::App& app) {
-  CLI::App& command =
-      *app.add_subcommand("run", "Run a firmware that was built outside this tree, from a shared library");
+  CLI::App& command = *app.add_subcommand(
+      "run", "Run a firmware from a shared library, which may be built outside this tree");
   const auto state = std::make_shared<RunCommand>();
-  command.add_option("firmware", state->library, "Shared library that csx600_add_firmware() built")
+  command
+      .add_option(
+          "firmware", state->library,
+          "Shared library that csx600_add_firmware() built, or the name of one that comes with csx600: "
+          "dgemm, fft, monte_carlo, pio_sweep, stream")
       ->type_name("LIBRARY")
       ->required();
   command
@@ -90,6 +109,7 @@ void add_run_command(CLI::App& app) {
   state->level.add_to(command);
   command.add_flag("--native", state->native, "Run the firmware without SystemC: same results, no time");
   add_check_hazards_flag(command, state->check_hazards);
+  state->limit.add_to(command);
   state->outputs.add_to(command, "--stats,--json",
                         "Write statistics: as CSV or text to a .csv or .txt file, otherwise as JSON");
   state->observation.add_to(command);

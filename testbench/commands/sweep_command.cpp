@@ -31,6 +31,7 @@ struct SweepCommand {
   bool retry_failed = false;
   int jobs = 1;
   ReachOption reach;
+  TimeLimitOption limit;
   const CLI::Option* jobs_option = nullptr;
 
   void run();
@@ -117,14 +118,14 @@ void SweepCommand::run_first(const Sweep& sweep, Ranks& ranks) const {
   const fs::path directory = output.empty() ? fs::path(file).stem().string() + ".sweep" : output;
   for (const char* const name : kSweepFiles)
     require_outputs_apart({{"--output", (directory / name).string()}}, {{"the sweep file", file}});
-  PointStore store(directory, build_digest());
+  PointStore store(directory, build_digest(sweep.firmware_builds()));
   for (const char* const name : {"sweep.json", "sweep.csv"}) require_writable(directory / name);
   if (retry_failed) forget_failed(sweep, store);
   const std::size_t before = count_finished(sweep, store);
   const InterruptGuard interrupt;
   const bool all = [&] {
     ProgressBar bar("sweep");
-    return run_sweep(sweep, store, {jobs, in_full}, ranks, [&](double share) {
+    return run_sweep(sweep, store, {jobs, in_full, limit.seconds()}, ranks, [&](double share) {
       bar.show(share);
       return !interrupt.requested();
     });
@@ -150,7 +151,7 @@ void SweepCommand::run() {
   Ranks ranks;
   const std::unique_ptr<Sweep> sweep = read(ranks);
   if (!sweep) return;
-  if (!ranks.is_first()) return serve_sweep(*sweep, ranks);
+  if (!ranks.is_first()) return serve_sweep(*sweep, ranks, limit.seconds());
   if (ranks.alone()) return run_first(*sweep, ranks);
   jobs = 1;
   try {
@@ -181,6 +182,7 @@ void add_sweep_command(CLI::App& app) {
   add_jobs_option(command, state->jobs);
   command.add_flag("--full", state->in_full, "Run every point in full instead of replaying streams");
   command.add_flag("--retry-failed", state->retry_failed, "Run points again that failed");
+  state->limit.add_to(command);
   state->jobs_option = command.get_option("--jobs");
   command.callback([state] { state->run(); });
 }

@@ -12,7 +12,4 @@ namespace testbench {
 std::string usage_error_text(const CLI::App& program, const CLI::Error& error,
                              const std::vector<std::string>& words);
 
-/// The name that a misspelt `word` most likely means; "" if no name has a letter in the same place.
-std::string nearest_name(const std::string& word, const std::vector<std::string>& names);
-
 }  // namespace testbench

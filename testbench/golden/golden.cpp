@@ -25,17 +25,30 @@ namespace fs = std::filesystem;
 
 bool is_kept(const std::string& key) {
   if (key == "image_sha256") return true;
+  constexpr const char* kOwnCounters = "firmware.counters.";
+  if (key.rfind(kOwnCounters, 0) == 0 && name_of(key) == "value") return true;
   const Counter* const counter = find_counter(key);
   return counter != nullptr && counter->kind == CounterKind::counted && group_of(key) != kSimulatorSection;
 }
 
-FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
+Json statistics_of(const PlugInSettings& run) {
+  const std::unique_ptr<plug_in::Firmware> firmware = run.make_firmware();
+  const PlugInResult result = run_plug_in(*firmware, run.options);
+  return plug_in_statistics(*firmware, run.options, result);
+}
+
+Json statistics_of(const GoldenRun& run, const Scene& scene) {
   RenderOptions options = run.options;
   options.program = built_for(scene, options.program);
   choose_tree(TriangleCount(scene), options.chip, run.given, options.program);
   const RenderResult result = render_on_chip(scene, options);
+  return render_statistics({run.scene, options, false}, result);
+}
+
+FlatStatistics kept_of(const GoldenRun& run, const GoldenScenes& scenes) {
   FlatStatistics kept;
-  for (auto& value : flatten(render_statistics({run.scene, options, false}, result)))
+  for (auto& value :
+       flatten(run.plug_in ? statistics_of(*run.plug_in) : statistics_of(run, scenes.at(run.scene))))
     if (is_kept(value.first)) kept.push_back(std::move(value));
   return kept;
 }
@@ -172,7 +185,7 @@ std::vector<std::pair<std::string, const FlatStatistics*>> runs_of(const GoldenT
 GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed) {
   GoldenScenes scenes;
   for (const GoldenRun& run : grid.runs)
-    if (scenes.count(run.scene) == 0) {
+    if (!run.plug_in && scenes.count(run.scene) == 0) {
       Scene scene = load_scene(run.scene, is_outside_allowed);
       scene.film = grid.film;
       scenes.emplace(run.scene, std::move(scene));
@@ -183,8 +196,7 @@ GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed)
 GoldenTables run_golden(const GoldenGrid& grid, const GoldenScenes& scenes, int jobs,
                         const std::function<void(double)>& progress) {
   std::vector<std::function<std::string()>> work;
-  for (const GoldenRun& run : grid.runs)
-    work.emplace_back([&] { return json_text(kept_of(run, scenes.at(run.scene))); });
+  for (const GoldenRun& run : grid.runs) work.emplace_back([&] { return json_text(kept_of(run, scenes)); });
   const std::vector<std::string> results = run_in_processes(work, jobs, [&](int finished) {
     if (progress) progress(finished / double(work.size()));
   });

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "testbench/plug_in/plug_in_settings.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/run/traversal_choice.hpp"
 #include "testbench/statistics/statistics_difference.hpp"
@@ -16,15 +17,16 @@ namespace testbench {
 struct GoldenRun {
   std::string file;   ///< of the runs of one scene and chip: "cornell_box-csx600.csv"
   std::string name;   ///< its column: "full n1 both lt"
-  std::string scene;  ///< path of its directory
+  std::string scene;  ///< path of its directory; "" of a firmware outside this tree
   std::string chip;   ///< preset, or path of its file
   RenderOptions options;
   GivenOptions given;  ///< options of the firmware that are not chosen as `csx600 render` does
+  std::optional<PlugInSettings> plug_in;  ///< the firmware that runs instead of a render
 };
 
 /// The runs that DIRECTORY/grid.toml asks for:
 ///
-///     width = 12               of the films
+///     width = 12               of the films, if there are any
 ///     height = 8
 ///     samples = 2              a pixel
 ///     [[grid]]                 all combinations of lists, by any key of a sweep (run_settings.hpp)
@@ -36,7 +38,12 @@ struct GoldenRun {
 ///     firmware.traversal = ["refill"]         brute_force if left out; node_format and node_width likewise
 ///     firmware.node_format = ["fp32"]         have their defaults
 ///
-/// Other options of a tree are chosen as `csx600 render` does. Throws InputError.
+/// Other options of a tree are chosen as `csx600 render` does. In place of scenes, a [[grid]] may have
+///
+///     firmware = ["dgemm"]     names of installed firmwares, or libraries relative to grid.toml
+///     option.panels = [2, 3]   their own options
+///
+/// Throws InputError.
 struct GoldenGrid {
   FilmSize film;
   std::vector<GoldenRun> runs;
@@ -44,7 +51,7 @@ struct GoldenGrid {
 GoldenGrid read_golden_grid(const std::filesystem::path& directory);
 
 /// What is kept of each run, by file and name: the counters (CounterKind::counted) without the simulator's,
-/// and the image's hash.
+/// and the image's hash or the counters of the firmware's own.
 using GoldenTable = std::vector<std::pair<std::string, FlatStatistics>>;
 using GoldenTables = std::map<std::string, GoldenTable>;
 

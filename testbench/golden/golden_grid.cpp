@@ -4,6 +4,7 @@
 
 #include "testbench/files/input_file.hpp"
 #include "testbench/golden/golden.hpp"
+#include "testbench/plug_in/firmware_path.hpp"
 #include "testbench/run/run_settings.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/run/toml_settings.hpp"
@@ -56,11 +57,13 @@ class GridReader {
         refuse(line_of(file_, node), std::string(key.str()), "an unknown key",
                "width, height, samples and [[grid]]");
     GoldenGrid grid;
-    grid.film = {positive(table, "width"), positive(table, "height")};
-    samples_ = positive(table, "samples");
     const toml::array* const grids = table["grid"].as_array();
     if (grids == nullptr || !grids->is_array_of_tables())
       refuse(file_, "grid", "none", "one [[grid]] or more");
+    if (!std::all_of(grids->begin(), grids->end(), names_firmware)) {
+      grid.film = {positive(table, "width"), positive(table, "height")};
+      samples_ = positive(table, "samples");
+    }
     for (const toml::node& node : *grids)
       for (const Settings& settings : product(*node.as_table()))
         add(make_run(settings, line_of(file_, node)), grid);
@@ -72,6 +75,9 @@ class GridReader {
                                   const std::string& allowed) {
     throw InputError(origin + ": " + key + ": found " + found + ", allowed is " + allowed);
   }
+
+  /// Whether the runs of a [[grid]] are of firmware outside this tree; `firmware.n = [1]` is a table.
+  static bool names_firmware(const toml::node& grid) { return (*grid.as_table())[kFirmwareKey].is_array(); }
 
   int positive(const toml::table& table, const char* key) const {
     constexpr std::int64_t kMost = 10000;
@@ -89,7 +95,7 @@ class GridReader {
     const std::string origin = line_of(file_, *leaf.node);
     if (const auto old = old_keys().find(leaf.key); old != old_keys().end())
       refuse(origin, leaf.key, "a name that is no longer used", old->second);
-    if (!is_setting(leaf.key)) require_current_key(origin, leaf.key);
+    if (!is_setting(leaf.key) && !is_plug_in_key(leaf.key)) require_current_key(origin, leaf.key);
     if (leaf.key == "size" || leaf.key == "samples")
       refuse(origin, leaf.key, "it in a [[grid]]", "width, height and samples of the whole file, above");
     const toml::array* const array = leaf.node->as_array();
@@ -100,10 +106,10 @@ class GridReader {
     for (const toml::node& node : *array) {
       const std::optional<std::string> value = scalar_text(node);
       if (!value) refuse(origin, leaf.key, found_text(node) + " in a list", "values");
-      const bool names_file =
-          leaf.key == "scene" || (leaf.key == "chip" && fs::path(*value).extension() == ".toml");
+      const bool names_file = leaf.key == "scene" || (leaf.key == kFirmwareKey && is_firmware_file(*value)) ||
+                              (leaf.key == "chip" && fs::path(*value).extension() == ".toml");
       settings.push_back({leaf.key, names_file ? path_of(*value) : *value, origin});
-      require_allowed(settings.back());
+      if (!is_plug_in_key(leaf.key)) require_allowed(settings.back());
     }
     return settings;
   }
@@ -131,7 +137,7 @@ class GridReader {
       runs = std::move(longer);
     }
     for (const Settings& run : runs)
-      if (std::none_of(run.begin(), run.end(), [](const Setting& setting) { return setting.key == "scene"; }))
+      if (find(run, "scene") == nullptr && find(run, kFirmwareKey) == nullptr)
         refuse(line_of(file_, table), "scene", "none", "a list of scenes");
     combinations_ += runs.size();
     return runs;
@@ -142,26 +148,67 @@ class GridReader {
   void add(GoldenRun&& run, GoldenGrid& grid) const {
     for (const GoldenRun& known : grid.runs) {
       if (known.file != run.file || known.name != run.name) continue;
-      if (known.scene == run.scene && known.chip == run.chip) return;
-      const bool is_scene = known.scene != run.scene;
-      refuse(file_, is_scene ? "scene" : "chip",
-             is_scene ? known.scene + " and " + run.scene : known.chip + " and " + run.chip,
+      if (source_of(known) == source_of(run) && known.chip == run.chip) return;
+      const bool is_source = source_of(known) != source_of(run);
+      refuse(file_,
+             !is_source    ? "chip"
+             : run.plug_in ? kFirmwareKey
+                           : "scene",
+             is_source ? source_of(known) + " and " + source_of(run) : known.chip + " and " + run.chip,
              "files of different names");
     }
     grid.runs.push_back(std::move(run));
   }
 
-  /// @param origin of the [[grid]], for values that do not fit each other
-  static RunSettings with_origin(const Settings& settings, const std::string& origin) {
+  static const std::string& source_of(const GoldenRun& run) {
+    return run.plug_in ? run.plug_in->library->path() : run.scene;
+  }
+
+  /// nullptr for a key that the run does not set.
+  static const Setting* find(const Settings& run, const std::string& key) {
+    const auto found =
+        std::find_if(run.begin(), run.end(), [&](const Setting& setting) { return setting.key == key; });
+    return found == run.end() ? nullptr : &*found;
+  }
+
+  /// What `make` returns; its errors name the [[grid]].
+  template <class Make>
+  static auto with_origin(const std::string& origin, Make&& make) {
     try {
-      return make_settings(settings);
+      return make();
     } catch (const InputError& error) {
       throw InputError(origin + ": " + error.what());
     }
   }
 
-  GoldenRun make_run(const Settings& settings, const std::string& origin) const {
-    const RunSettings made = with_origin(settings, origin);
+  std::shared_ptr<const SharedLibrary> library(const Setting& firmware) {
+    std::shared_ptr<const SharedLibrary>& loaded = libraries_[firmware.value];
+    if (!loaded)
+      loaded =
+          with_origin(firmware.origin, [&] { return std::make_shared<const SharedLibrary>(firmware.value); });
+    return loaded;
+  }
+
+  /// "dgemm-csx600.csv", "lt option.panels=2"
+  GoldenRun make_plug_in_run(const Settings& settings, const Setting& firmware, const std::string& origin) {
+    const std::shared_ptr<const SharedLibrary> loaded = library(firmware);
+    for (const Setting& setting : settings)
+      if (is_plug_in_key(setting.key) && setting.key != kFirmwareKey) require_option(*loaded, setting);
+    GoldenRun run;
+    run.plug_in = with_origin(origin, [&] { return make_plug_in_settings(loaded, settings); });
+    run.chip = run.plug_in->chip;
+    run.file = firmware_name(loaded->path()) + "-" + fs::path(run.chip).stem().string() + ".csv";
+    run.name = timing_name(run.plug_in->options.timing);
+    for (const Setting& setting : settings)
+      if (setting.key != kFirmwareKey && setting.key != "chip" && setting.key != "timing")
+        run.name += " " + setting.key + "=" + setting.value;
+    return run;
+  }
+
+  GoldenRun make_run(const Settings& settings, const std::string& origin) {
+    if (const Setting* const firmware = find(settings, kFirmwareKey))
+      return make_plug_in_run(settings, *firmware, origin);
+    const RunSettings made = with_origin(origin, [&] { return make_settings(settings); });
     GoldenRun run;
     run.scene = made.scene;
     run.chip = made.chip;
@@ -196,7 +243,8 @@ class GridReader {
   fs::path directory_;
   std::string file_;
   int samples_ = 0;
-  std::size_t combinations_ = 0;  ///< of the grids so far
+  std::map<std::string, std::shared_ptr<const SharedLibrary>> libraries_;  ///< by the grid's name for them
+  std::size_t combinations_ = 0;                                           ///< of the grids so far
 };
 
 }  // namespace

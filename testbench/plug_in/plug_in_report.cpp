@@ -6,6 +6,8 @@
 #include "testbench/run/energy.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/statistics/chip_config_json.hpp"
+#include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/statistics_file.hpp"
 
 namespace testbench {
 namespace {
@@ -16,6 +18,17 @@ std::string formatted(const char* format, double value) {
   char buffer[64];
   std::snprintf(buffer, sizeof(buffer), format, value);
   return buffer;
+}
+
+/// Each with its unit and meaning, since no table of this program has them.
+Json counters_json(const plug_in::Firmware& firmware) {
+  Json json = Json::array();
+  for (const plug_in::Counter* const counter : firmware.counters())
+    json.push_back({{"name", counter->name()},
+                    {"value", counter->value()},
+                    {"unit", counter->unit()},
+                    {"meaning", counter->meaning()}});
+  return json;
 }
 
 Json options_json(const plug_in::Firmware& firmware) {
@@ -30,13 +43,18 @@ Json options_json(const plug_in::Firmware& firmware) {
 Json plug_in_statistics(const plug_in::Firmware& firmware, const PlugInOptions& options,
                         const PlugInResult& result) {
   Json json;
-  json["format"] = kPlugInStatisticsFormat;
-  json["firmware"] = {{"name", firmware.name()}, {"options", options_json(firmware)}};
-  if (firmware.work().amount > 0)
-    json["work"] = {{"amount", firmware.work().amount}, {"unit", firmware.work().unit}};
+  json["format"] = kRunStatisticsFormat;
+  json["firmware"] = {
+      {"name", firmware.name()}, {"options", options_json(firmware)}, {"counters", counters_json(firmware)}};
   json["machine"] = options.native ? "native" : "chip";
   json["timing"] = options.native ? "none" : timing_name(options.timing);
+  json["chip_preset"] = options.chip.preset;
   json["chip_config"] = chip_config_json(options.chip);
+  if (const plug_in::Work work = firmware.work(); work.amount > 0) {
+    json["work"] = Json::object();
+    write_counters(work_counters(), WorkDone{work.amount, work.unit, result.chip ? &*result.chip : nullptr},
+                   json["work"]);
+  }
   if (!result.chip) return json;
   json["simulated_cycles"] = result.chip->firmware_cycles;
   json["simulated_seconds"] = result.chip->seconds();
@@ -46,13 +64,17 @@ Json plug_in_statistics(const plug_in::Firmware& firmware, const PlugInOptions& 
 
 std::string plug_in_table(const plug_in::Firmware& firmware, const PlugInResult& result) {
   std::string table = firmware.name() + ": results are right\n";
-  if (!result.chip) return table;
-  const ChipStatistics& chip = *result.chip;
   const auto row = [&](const std::string& name, const std::string& value) {
     constexpr std::size_t kColumn = 24;
     const std::string gap(kColumn - std::min(kColumn - 2, name.size()), ' ');
     table += "  " + name + gap + value + "\n";
   };
+  for (const plug_in::Counter* const counter : firmware.counters()) {
+    const bool has_unit = counter->unit() != "-" && counter->unit() != "count";
+    row(counter->name(), formatted("%.6g", counter->value()) + (has_unit ? " " + counter->unit() : ""));
+  }
+  if (!result.chip) return table;
+  const ChipStatistics& chip = *result.chip;
   row("simulated time",
       formatted("%.6f s", chip.seconds()) + formatted(" (%.0f cycles)", double(chip.firmware_cycles)));
   row("with upload, download", formatted("%.6f s", chip.total_seconds()));

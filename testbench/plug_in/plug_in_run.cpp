@@ -1,13 +1,20 @@
 #include "testbench/plug_in/plug_in_run.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <new>
+#include <stdexcept>
 #include <systemc>
 
+#include "model/config/address_map.hpp"
 #include "model/csx600.hpp"
 #include "model/hazards/hazard_checker.hpp"
-#include "testbench/machine/native_machine.hpp"
+#include "testbench/machine/recording_machine.hpp"
 #include "testbench/observe/observation.hpp"
+#include "testbench/plug_in/buffer_places.hpp"
+#include "testbench/system/crash_guard.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/simulator_time.hpp"
 
 namespace testbench {
 namespace {
@@ -15,20 +22,8 @@ namespace {
 using plug_in::Firmware;
 using plug_in::MonoBufferBase;
 
-/// Buffers start on a multiple of this, so that a PE's pieces are aligned if the firmware's sizes are.
-constexpr std::uint64_t kBufferAlignment = 256;
-
-/// Returns how many bytes of mono memory the buffers take.
-std::uint64_t place_buffers(const Firmware& firmware, std::uint64_t available_bytes) {
-  std::uint64_t next = 0;
-  for (MonoBufferBase* const buffer : firmware.buffers()) {
-    buffer->place_at(next);
-    next += (buffer->size_bytes() + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment;
-  }
-  if (next > available_bytes)
-    throw InputError(firmware.name() + ": buffers need " + std::to_string(next) +
-                     " bytes of mono memory, ddr.size_bytes allows " + std::to_string(available_bytes));
-  return next;
+std::uint64_t place_in(const model::ChipConfig& chip, const Firmware& firmware) {
+  return place_buffers(firmware, chip.ddr.size_bytes, model::on_chip_sram_range(chip)).ddr;
 }
 
 /// What a plug-in throws, as errors of the input or of the run.
@@ -45,13 +40,28 @@ auto with_plug_in_errors(const Firmware& firmware, Work&& work) {
     throw RunError(firmware.name() + ": " + error.what());
   } catch (const cn::MachineFault& fault) {
     throw RunError(fault.what());
+  } catch (const InputError&) {
+    throw;
+  } catch (const RunError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::length_error&) {  // of a container that was asked to hold more than memory could
+    throw std::bad_alloc();
+  } catch (const std::exception& error) {
+    throw RunError(firmware.name() + ": " + error.what());
+  } catch (...) {
+    throw RunError(firmware.name() + ": found that it throws what is no std::exception");
   }
 }
 
 /// The body, with the checker of hazards around it if that is wanted.
 class CheckedBody {
  public:
-  explicit CheckedBody(Firmware& firmware) : firmware_(firmware) {}
+  explicit CheckedBody(Firmware& firmware)
+      : firmware_(firmware),
+        crash_message_(firmware.name() +
+                       ": crashed; --check-hazards names kernels that leave the SRAM of their PEs") {}
 
   void check_hazards(cn::Machine& machine, model::HazardChecker::Clock clock) {
     checker_.emplace(machine, std::move(clock));
@@ -60,7 +70,11 @@ class CheckedBody {
     machine.set_access_observer(&*checker_);
   }
   void run(cn::Machine& machine) {
-    firmware_.run(machine);
+    {
+      constexpr int kRunFailed = 1;
+      const CrashGuard guard(crash_message_, kRunFailed, checker_ ? &checker_->hazard() : nullptr);
+      firmware_.run(machine);
+    }
     if (checker_) checker_->firmware_ends();
   }
   void finish() const {
@@ -69,14 +83,17 @@ class CheckedBody {
 
  private:
   Firmware& firmware_;
+  std::string crash_message_;
   std::optional<model::HazardChecker> checker_;
 };
 
 /// The computer that the board is in: uploads, starts the firmware, waits for its end, downloads.
 class PlugInHost : public sc_core::sc_module {
  public:
-  PlugInHost(const sc_core::sc_module_name& name, model::Csx600& chip, const Firmware& firmware)
-      : sc_module(name), chip_(chip), firmware_(firmware) {
+  /// @param keeps_results false: what is downloaded is dropped
+  PlugInHost(const sc_core::sc_module_name& name, model::Csx600& chip, const Firmware& firmware,
+             bool keeps_results)
+      : sc_module(name), chip_(chip), firmware_(firmware), keeps_results_(keeps_results) {
     SC_HAS_PROCESS(PlugInHost);
     SC_THREAD(run);
   }
@@ -93,11 +110,14 @@ class PlugInHost : public sc_core::sc_module {
     chip_.control_unit.start();
     if (!chip_.control_unit.finished()) wait(chip_.control_unit.finished_event());
     for (MonoBufferBase* const buffer : firmware_.buffers())
-      if (buffer->is_downloaded() && buffer->size_bytes() > 0)
-        wait_until(
-            chip_.host_link.download(buffer->address(), buffer->host_bytes(), buffer->size_bytes(), now()));
+      if (buffer->is_downloaded() && buffer->size_bytes() > 0) download(*buffer);
     finished_cycle_ = now();
     finished_ = true;
+  }
+  void download(MonoBufferBase& buffer) {
+    if (!keeps_results_) dropped_.resize(std::max<std::uint64_t>(dropped_.size(), buffer.size_bytes()));
+    void* const to = keeps_results_ ? buffer.host_bytes() : dropped_.data();
+    wait_until(chip_.host_link.download(buffer.address(), to, buffer.size_bytes(), now()));
   }
   void wait_until(model::Cycles cycle) {
     const sc_core::sc_time target = chip_.clock.time_at(cycle);
@@ -107,20 +127,26 @@ class PlugInHost : public sc_core::sc_module {
 
   model::Csx600& chip_;
   const Firmware& firmware_;
+  bool keeps_results_;
+  std::vector<std::uint8_t> dropped_;
   bool finished_ = false;
   model::Cycles finished_cycle_ = 0;
 };
 
-PlugInResult run_on_chip(Firmware& firmware, const PlugInOptions& options) {
-  CheckedBody body(firmware);
-  model::Csx600 chip("csx600", options.chip, options.timing);
-  const PlugInHost host("host", chip, firmware);
-  if (options.check_hazards) body.check_hazards(chip.control_unit, [&] { return chip.control_unit.now(); });
-  Observation observation(options.observation, chip);
-  chip.control_unit.load([&](cn::Machine& machine) { body.run(machine); });
+void simulate(model::Csx600& chip, const PlugInHost& host) {
   sc_core::sc_start();
   chip.control_unit.require_finished();
   if (!host.finished()) throw RunError("the firmware has ended, but the host has not");
+}
+
+PlugInResult run_on_chip(Firmware& firmware, const PlugInOptions& options) {
+  CheckedBody body(firmware);
+  model::Csx600 chip("csx600", options.chip, options.timing);
+  const PlugInHost host("host", chip, firmware, true);
+  if (options.check_hazards) body.check_hazards(chip.control_unit, [&] { return chip.control_unit.now(); });
+  Observation observation(options.observation, chip);
+  chip.control_unit.load([&](cn::Machine& machine) { body.run(machine); });
+  simulate(chip, host);
   body.finish();
   PlugInResult result;
   result.chip = collect_statistics(chip, host.finished_cycle());
@@ -128,32 +154,78 @@ PlugInResult run_on_chip(Firmware& firmware, const PlugInOptions& options) {
   return result;
 }
 
-PlugInResult run_on_native_machine(Firmware& firmware, const PlugInOptions& options,
-                                   std::uint64_t mono_bytes) {
-  CheckedBody body(firmware);
-  NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, mono_bytes);
-  if (options.check_hazards) body.check_hazards(machine, {});
-  const auto copy = [&](const MonoBufferBase& buffer, void* to, const void* from) {
-    if (buffer.size_bytes() > 0) std::memcpy(to, from, buffer.size_bytes());
+/// Uploads, runs, downloads.
+void run_natively(Firmware& firmware, NativeMachine& machine, const std::function<void(cn::Machine&)>& body) {
+  const auto place_of = [&](const MonoBufferBase& buffer) {
+    const bool on_chip = buffer.memory() == plug_in::Memory::on_chip_sram;
+    return on_chip ? machine.scratchpad_bytes() + (buffer.address() - machine.scratchpad().first)
+                   : machine.mono() + buffer.address();
   };
   for (MonoBufferBase* const buffer : firmware.buffers())
-    if (buffer->is_uploaded()) copy(*buffer, machine.mono() + buffer->address(), buffer->host_bytes());
-  machine.run_firmware([&](cn::Machine& on) { body.run(on); });
-  body.finish();
+    if (buffer->is_uploaded() && buffer->size_bytes() > 0)
+      std::memcpy(place_of(*buffer), buffer->host_bytes(), buffer->size_bytes());
+  machine.run_firmware(body);
   for (MonoBufferBase* const buffer : firmware.buffers())
-    if (buffer->is_downloaded()) copy(*buffer, buffer->host_bytes(), machine.mono() + buffer->address());
-  return {};
+    if (buffer->is_downloaded() && buffer->size_bytes() > 0)
+      std::memcpy(buffer->host_bytes(), place_of(*buffer), buffer->size_bytes());
+}
+
+void run_on_native_machine(Firmware& firmware, const PlugInOptions& options, std::uint64_t ddr_bytes) {
+  CheckedBody body(firmware);
+  NativeMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, ddr_bytes,
+                        model::on_chip_sram_range(options.chip));
+  if (options.check_hazards) body.check_hazards(machine, {});
+  run_natively(firmware, machine, [&](cn::Machine& on) { body.run(on); });
+  body.finish();
 }
 
 }  // namespace
 
 PlugInResult run_plug_in(Firmware& firmware, const PlugInOptions& options) {
   return with_plug_in_errors(firmware, [&] {
+    const SimulatorTimer timer;
     firmware.prepare(options.chip.chip.pes);
-    const std::uint64_t mono_bytes = place_buffers(firmware, options.chip.ddr.size_bytes);
-    PlugInResult result = options.native ? run_on_native_machine(firmware, options, mono_bytes)
-                                         : run_on_chip(firmware, options);
+    const std::uint64_t ddr_bytes = place_in(options.chip, firmware);
+    PlugInResult result;
+    if (options.native) {
+      run_on_native_machine(firmware, options, ddr_bytes);
+    } else {
+      result = run_on_chip(firmware, options);
+    }
     firmware.check();
+    result.cpu_seconds = timer.cpu_seconds();
+    return result;
+  });
+}
+
+PlugInRecording record_plug_in(std::unique_ptr<Firmware> firmware, const PlugInOptions& options) {
+  PlugInRecording recording;
+  recording.firmware = std::move(firmware);
+  Firmware& recorded = *recording.firmware;
+  with_plug_in_errors(recorded, [&] {
+    recorded.prepare(options.chip.chip.pes);
+    const std::uint64_t ddr_bytes = place_in(options.chip, recorded);
+    RecordingMachine machine(options.chip.chip.pes, options.chip.poly.sram_bytes, ddr_bytes, recording.stream,
+                             model::on_chip_sram_range(options.chip));
+    run_natively(recorded, machine, [&](cn::Machine& on) { recorded.run(on); });
+    machine.finish();
+    recorded.check();
+  });
+  return recording;
+}
+
+PlugInResult replay_plug_in(const PlugInRecording& recording, const PlugInOptions& options) {
+  return with_plug_in_errors(*recording.firmware, [&] {
+    const SimulatorTimer timer;
+    place_in(options.chip, *recording.firmware);
+    model::Csx600 chip("csx600", options.chip, options.timing);
+    const PlugInHost host("host", chip, *recording.firmware, false);
+    chip.pio_engine.leave_data(true);
+    chip.control_unit.load([&](cn::Machine& machine) { recording.stream.replay(machine); });
+    simulate(chip, host);
+    PlugInResult result;
+    result.chip = collect_statistics(chip, host.finished_cycle());
+    result.cpu_seconds = timer.cpu_seconds();
     return result;
   });
 }

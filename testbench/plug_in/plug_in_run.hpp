@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 #include "firmware/plug_in/firmware.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
+#include "testbench/machine/timing_stream.hpp"
 #include "testbench/observe/observation_options.hpp"
 #include "testbench/run/chip_statistics.hpp"
 
@@ -23,14 +25,28 @@ struct PlugInOptions {
 
 struct PlugInResult {
   std::optional<ChipStatistics> chip;  ///< none of a native run
+  double cpu_seconds = 0;              ///< of the simulator
   std::string observation_failures;
 };
 
 /// Prepares, uploads, runs, downloads and checks. Throws InputError for options that do not fit each other or
-/// buffers that do not fit mono memory, and RunError for a fault, a hazard and results that are wrong.
+/// buffers that do not fit their memory, and RunError for a fault, a hazard, results that are wrong, and
+/// whatever else the firmware throws.
 PlugInResult run_plug_in(plug_in::Firmware& firmware, const PlugInOptions& options);
 
-inline constexpr const char* kPlugInStatisticsFormat = "csx600-run-1";
+/// A firmware that was run once and its results checked, for other chips to be timed with.
+struct PlugInRecording {
+  std::unique_ptr<plug_in::Firmware> firmware;  ///< prepared, its counters set
+  TimingStream stream;                          ///< what it asks of its machine
+};
+
+/// Runs natively and records. Throws as run_plug_in() does, and RunError for a firmware of several threads,
+/// whose order of calls depends on the chip.
+PlugInRecording record_plug_in(std::unique_ptr<plug_in::Firmware> firmware, const PlugInOptions& options);
+
+/// What run_plug_in() would return, to the cycle and in every statistic, without executing a kernel. Only
+/// parameters may differ from the recorded run's that cannot change its stream (ParameterInfo::effect).
+PlugInResult replay_plug_in(const PlugInRecording& recording, const PlugInOptions& options);
 
 /// What `csx600 run` writes: the firmware's options and what the chip counted.
 nlohmann::ordered_json plug_in_statistics(const plug_in::Firmware& firmware, const PlugInOptions& options,

@@ -4,8 +4,15 @@
 
 #include <cstring>
 #include <filesystem>
+#include <set>
 
+#include "testbench/files/input_file.hpp"
+#include "testbench/plug_in/firmware_path.hpp"
+#include "testbench/system/crash_guard.hpp"
+#include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/message_text.hpp"
+#include "testbench/system/nearest_name.hpp"
 
 namespace testbench {
 namespace {
@@ -15,6 +22,10 @@ constexpr cn::Level kLevels[] = {cn::Level::x86_64_v2, cn::Level::x86_64_v3, cn:
 const void* load_entry(const std::string& path) {
   if (!std::filesystem::is_regular_file(path))
     throw InputError("firmware: found '" + path + "', allowed is the file of a shared library");
+  constexpr int kWrongInput = 2;
+  const std::string crash_message = message_line(
+      "firmware: found '" + path + "', which crashes as it is loaded; allowed is a library that is whole");
+  const CrashGuard guard(crash_message, kWrongInput);
   void* const library = dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr)
     throw InputError("firmware: found '" + path + "', which does not load as a shared library: " + dlerror());
@@ -33,23 +44,44 @@ void require_version(const std::string& path, const void* entry) {
                    plug_in::kInterfaceVersion + ": build it again with the package of this program");
 }
 
-plug_in::OptionBase& find_option(plug_in::Firmware& firmware, const std::string& word,
-                                 const std::string& name) {
-  std::string names;
-  for (plug_in::OptionBase* const option : firmware.options()) {
-    if ("--" + option->name() == name) return *option;
-    names += (names.empty() ? "--" : ", --") + option->name();
+/// Throws InputError for a name that is there twice.
+template <class Declared>
+void require_distinct(const std::string& path, const char* what, const std::vector<Declared*>& declared) {
+  std::set<std::string> names;
+  for (const Declared* const one : declared)
+    if (!names.insert(one->name()).second)
+      throw InputError("firmware: found '" + path + "', which declares the " + what + " '" + one->name() +
+                       "' twice; allowed is once");
+}
+
+std::unique_ptr<plug_in::Firmware> checked(const std::string& path,
+                                           std::unique_ptr<plug_in::Firmware> firmware) {
+  require_distinct(path, "option", firmware->options());
+  require_distinct(path, "counter", firmware->counters());
+  return firmware;
+}
+
+[[noreturn]] void refuse_option(const plug_in::Firmware& firmware, const std::string& option,
+                                const OptionSpelling& spelling) {
+  std::vector<std::string> names;
+  std::string allowed;
+  for (const plug_in::OptionBase* const known : firmware.options()) {
+    names.push_back(spelling.prefix + known->name());
+    allowed += (allowed.empty() ? "" : ", ") + names.back();
   }
-  throw InputError(firmware.name() + ": found '" + word + "', allowed is " +
-                   (names.empty() ? "no option" : names));
+  const std::string nearest = nearest_name(spelling.prefix + option, names);
+  throw InputError(spelling.origin + "found '" + spelling.prefix + option + "', allowed is " +
+                   (allowed.empty() ? "no option" : allowed) +
+                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
 
 }  // namespace
 
-SharedLibrary::SharedLibrary(const std::string& path) : path_(path) {
-  const void* const entry = load_entry(path);
-  require_version(path, entry);
+SharedLibrary::SharedLibrary(const std::string& name) : path_(firmware_path(name)) {
+  const void* const entry = load_entry(path_);
+  require_version(path_, entry);
   entry_ = static_cast<const plug_in::Entry*>(entry);
+  build_ = sha256(read_input_file(path_, "the file of a shared library"));
 }
 
 cn::Level SharedLibrary::choose_level(std::optional<cn::Level> wanted) const {
@@ -70,30 +102,46 @@ cn::Level SharedLibrary::choose_level(std::optional<cn::Level> wanted) const {
 }
 
 std::unique_ptr<plug_in::Firmware> SharedLibrary::make(cn::Level level) const {
-  return entry_->at_level[std::size_t(level)]();
+  return checked(path_, entry_->at_level[std::size_t(level)]());
 }
 
 std::unique_ptr<plug_in::Firmware> SharedLibrary::make_observed() const {
   if (entry_->observed == nullptr)
     throw InputError("--check-hazards: found '" + path_ +
                      "' without observed kernels; allowed is a library that csx600_add_firmware() built");
-  return entry_->observed();
+  return checked(path_, entry_->observed());
+}
+
+void set_option(plug_in::Firmware& firmware, const std::string& option, const std::string& value,
+                const OptionSpelling& spelling) {
+  for (plug_in::OptionBase* const known : firmware.options()) {
+    if (known->name() != option) continue;
+    if (known->set(value)) return;
+    const std::string found = value.empty() ? "no value" : "'" + value + "'";
+    throw InputError(spelling.origin + spelling.prefix + option + ": found " + found + ", allowed is " +
+                     known->allowed_text());
+  }
+  refuse_option(firmware, option, spelling);
 }
 
 void set_options(plug_in::Firmware& firmware, const std::vector<std::string>& words) {
+  const OptionSpelling spelling{firmware.name() + ": ", "--"};
+  std::set<std::string> seen;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
+    if (word.size() < 3 || word.rfind("--", 0) != 0)
+      throw InputError(spelling.origin + "found '" + word + "', allowed is --name value or --name=value");
     const std::size_t equals = word.find('=');
-    const std::string name = word.substr(0, equals);
-    plug_in::OptionBase& option = find_option(firmware, word, name);
-    const auto refuse = [&](const std::string& found) {
-      std::string message = name + ": found ";
-      message += found + ", allowed is " + option.allowed_text();
-      throw InputError(message);
-    };
-    if (equals == std::string::npos && i + 1 == words.size()) refuse("no value");
-    const std::string value = equals == std::string::npos ? words[++i] : word.substr(equals + 1);
-    if (!option.set(value)) refuse("'" + value + "'");
+    const std::string option = word.substr(2, equals == std::string::npos ? equals : equals - 2);
+    if (!seen.insert(option).second)
+      throw InputError(spelling.origin + "--" + option + ": found twice, allowed is once");
+    std::string value;
+    if (equals != std::string::npos) {
+      value = word.substr(equals + 1);
+    } else if (i + 1 < words.size()) {
+      value = words[++i];
+    }
+    set_option(firmware, option, value, spelling);
   }
 }
 
@@ -102,6 +150,14 @@ std::string describe_options(const plug_in::Firmware& firmware) {
   for (const plug_in::OptionBase* const option : firmware.options())
     text += "  --" + option->name() + " " + option->allowed_text() + " [" + option->value_text() + "]  " +
             option->meaning() + "\n";
+  return text;
+}
+
+std::string describe_counters(const plug_in::Firmware& firmware) {
+  std::string text;
+  for (const plug_in::Counter* const counter : firmware.counters())
+    text +=
+        "firmware.counters." + counter->name() + "  " + counter->unit() + "  " + counter->meaning() + "\n";
   return text;
 }
 

@@ -38,17 +38,18 @@ const Schema& sweep_schema() {
 
 Json parse(const fs::path& path) {
   constexpr const char* kAllowed =
-      "a statistics file of `csx600 render --stats` or a directory of `csx600 sweep`";
+      "a statistics file of `csx600 render` or `csx600 run`, or a directory of `csx600 sweep`";
   const std::string text = read_input_file(path, kAllowed);
   Json json = parse_json_object(text, path, kAllowed);
   const std::string format = json.contains("format") && json["format"].is_string()
                                  ? json["format"].get<std::string>()
                                  : std::string("none");
   if (format == "csx600-statistics-1") require_statistics_format(format, path.string());
-  if (format != kStatisticsFormat && format != kSweepFormat)
+  const bool is_run = format == kStatisticsFormat || format == kRunStatisticsFormat;
+  if (!is_run && format != kSweepFormat)
     throw InputError(path.string() + ": format: found '" + format + "'; allowed: '" + kStatisticsFormat +
-                     "', '" + kSweepFormat + "'");
-  if (format == kStatisticsFormat) return parse_statistics(text, path);
+                     "', '" + kRunStatisticsFormat + "', '" + kSweepFormat + "'");
+  if (is_run) return parse_statistics(text, path);
   require_schema(json, sweep_schema(), text, path);
   return json;
 }
@@ -121,6 +122,8 @@ std::string report_page(const std::string& run_or_sweep, const std::string& imag
     throw InputError("--image: found with a sweep; allowed: with one run's statistics");
   const fs::path named = is_sweep ? fs::absolute(path).parent_path() : path;
   const std::string title = (is_sweep ? "Sweep " : "Run ") + named.stem().string();
+  if (!image.empty() && json["format"] == kRunStatisticsFormat)
+    throw InputError("--image: found with statistics of `csx600 run`; allowed: with a render's");
   Json data = {{"title", title}, {is_sweep ? "sweep" : "run", json}};
   if (!image.empty()) data["image"] = image_address(image);
   namespace assets = report_assets;

@@ -8,10 +8,17 @@ const kCauses = {
   wait_host: "waiting for the host", thread_switch: "thread switches",
 };
 
+/// A firmware outside the tree says what it counts its work in.
+function rates(run) {
+  if ("rays" in run)
+    return [[forPeople(run.rays / run.simulated_seconds), "rays/s"], [forPeople(run.segments / run.simulated_seconds), "path segments/s"]];
+  if (!run.work) return [];
+  return [[forPeople(run.work.per_second), `${run.work.unit}/s`], [forPeople(run.work.per_second_with_host), `${run.work.unit}/s with upload and download`]];
+}
+
 function showFigures(run, chip) {
   const figures = [
-    [forPeople(run.rays / run.simulated_seconds), "rays/s"],
-    [forPeople(run.segments / run.simulated_seconds), "path segments/s"],
+    ...rates(run),
     [forPeople(run.simulated_seconds, "s"), "simulated"],
     [forPeople(run.simulated_cycles), "cycles"],
     [percent(chip.pe_utilisation), "of them kernels on the PE array"],
@@ -19,7 +26,9 @@ function showFigures(run, chip) {
     [percent(chip.exposed_pio_share), "waiting for PIO"],
     [forPeople(chip.ddr_bytes_per_second, "B/s"), "to and from DDR"],
   ];
-  if (chip.energy) figures.push([forPeople(chip.energy.joules, "J"), "energy"], [forPeople(run.rays_per_joule), "rays/J"]);
+  if (chip.energy) figures.push([forPeople(chip.energy.joules, "J"), "energy"]);
+  if ("rays_per_joule" in run) figures.push([forPeople(run.rays_per_joule), "rays/J"]);
+  else if (run.work) figures.push([forPeople(run.work.per_joule), `${run.work.unit}/J`]);
   addFigures(figures);
 }
 
@@ -37,7 +46,7 @@ function showKernels(run, chip) {
 /// How full the ray bin is in each pass, which decides how many PEs are busy. Runs that did not count it show
 /// kernels only.
 function showTime(run, chip) {
-  const intervals = run.counts.rays_by_interval;
+  const intervals = run.counts && run.counts.rays_by_interval;
   if (!Array.isArray(intervals) || intervals.length < 2) return;
   const passes = run.counts.passes_per_interval;
   const slots = chip.pes * run.firmware.bin_blocks;
@@ -127,15 +136,31 @@ function showTransfers(chip) {
   addTable(section, ["count", "value"], rows);
 }
 
-function showRun(run, image) {
+/// What was run, without where.
+function describeRun(run) {
   const firmware = run.firmware;
+  if (firmware.options)
+    return [firmware.name, ...Object.entries(firmware.options).map(([name, value]) => `${name} = ${value}`)].join(", ");
+  return `${run.scene}, ${run.width} x ${run.height}, ${firmware.samples} samples a pixel, program ${firmware.program}, n = ${firmware.n}, ` +
+    `buffering ${firmware.buffer}`;
+}
+
+/// The counters of a firmware's own.
+function showCounters(run) {
+  const counters = run.firmware.counters;
+  if (!Array.isArray(counters) || counters.length === 0) return;
+  addTable(addSection("Counters of the firmware", ""), ["counter", "value", "unit", "meaning"],
+           counters.map((counter) => [{ text: counter.name }, counter.value, { text: counter.unit }, { text: counter.meaning }]));
+}
+
+function showRun(run, image) {
   document.getElementById("subtitle").textContent =
-    `${run.scene}, ${run.width} x ${run.height}, ${firmware.samples} samples a pixel, program ${firmware.program}, n = ${firmware.n}, ` +
-    `buffering ${firmware.buffer}, ${run.machine === "native" ? "native: no time was simulated" : `chip ${run.chip_preset}`}`;
+    `${describeRun(run)}, ${run.machine === "native" ? "native: no time was simulated" : `chip ${run.chip_preset}`}`;
   const chip = run.chip;
   if (chip) showFigures(run, chip);
-  else addFigures([[forPeople(run.segments), "path segments"], [forPeople(run.rays), "rays"]]);
+  else if ("segments" in run) addFigures([[forPeople(run.segments), "path segments"], [forPeople(run.rays), "rays"]]);
   if (image) addSection("Image", `SHA-256 of its pixels ${run.image_sha256.slice(0, 16)}…`).append(element("img", { src: image, alt: "The image of this run" }));
+  showCounters(run);
   if (!chip) return;
   const cycles = addSection("Where the cycles went", "Every cycle of the control unit has one cause");
   addBars(cycles, Object.entries(chip.control_unit.cycles_by_cause).map(([cause, value]) => [kCauses[cause] || cause, value]),

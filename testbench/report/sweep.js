@@ -1,11 +1,16 @@
 // The page of a sweep: results over its axes, the Pareto front, all points.
 "use strict";
 
-const kHeadline = ["rays_per_second", "segments_per_second", "simulated_seconds", "chip.pe_utilisation", "chip.exposed_pio_share",
-                   "pio_utilisation", "ddr_utilisation", "chip.ddr_bytes_per_second", "ddr_bytes_per_ray", "rays_per_joule"];
+const kHeadline = ["rays_per_second", "segments_per_second", "work.per_second", "simulated_seconds", "chip.pe_utilisation", "chip.exposed_pio_share",
+                   "pio_utilisation", "ddr_utilisation", "chip.ddr_bytes_per_second", "ddr_bytes_per_ray", "rays_per_joule", "work.per_joule"];
 /// The results that count as costs of a ray, the most informative first.
 const kCosts = ["chip.energy.joules", "chip.energy.watts", "total_sram_bytes", "chip.ddr_bytes_per_second", "ddr_bytes_per_ray", "pio_bytes_per_ray"];
 const kMostSeries = 12;
+
+/// What a point achieves a second: rays, or the work of a firmware outside the tree.
+function gainOf(points) {
+  return "rays_per_second" in points[0].results ? { key: "rays_per_second", title: "rays/s" } : { key: "work.per_second", title: "work/s" };
+}
 
 function unique(values) {
   return [...new Set(values)];
@@ -111,8 +116,9 @@ class ParetoPlot {
     this.sweep = sweep;
     this.points = points;
     this.costs = costs;
+    this.gain = gainOf(points);
     this.cost = Object.keys(costs)[0];
-    this.section = addSection("Pareto front", "Rays a second against what they cost; on the line are the points that no other beats in both", true);
+    this.section = addSection("Pareto front", "What is done a second against what it costs; on the line are the points that no other beats in both", true);
     this.controls = element("div", { class: "controls" });
     this.section.append(this.controls);
     addSelect(this.controls, "cost", Object.keys(costs).map((name) => [name, name]), this.cost, (value) => { this.cost = value; this.show(); });
@@ -124,7 +130,8 @@ class ParetoPlot {
 
   show() {
     const cost = this.costs[this.cost];
-    const gain = (point) => point.results.rays_per_second;
+    const title = this.gain.title;
+    const gain = (point) => point.results[this.gain.key];
     const front = paretoFront(this.points, cost, gain);
     const dot = (point) => ({ value: [cost(point), gain(point)], name: describe(point.inputs, this.sweep.keys) });
     const scale = (values) => (scaleOf(values) === "log" ? "log" : "value");
@@ -132,14 +139,14 @@ class ParetoPlot {
       ...chartBase(),
       grid: { left: 8, right: 24, top: 60, bottom: 34, containLabel: true },
       legend: { top: 0 },
-      tooltip: { trigger: "item", formatter: (item) => `${item.name}<br>${this.cost} = ${forPeople(item.value[0])}<br>rays/s = ${forPeople(item.value[1])}` },
+      tooltip: { trigger: "item", formatter: (item) => `${item.name}<br>${this.cost} = ${forPeople(item.value[0])}<br>${title} = ${forPeople(item.value[1])}` },
       xAxis: { type: scale(this.points.map(cost)), name: this.cost, nameLocation: "middle", nameGap: 28, scale: true, axisLabel: { formatter: (value) => forPeople(value), hideOverlap: true } },
-      yAxis: { type: scale(this.points.map(gain)), name: "rays/s", scale: true, axisLabel: { formatter: (value) => forPeople(value) } },
+      yAxis: { type: scale(this.points.map(gain)), name: title, scale: true, axisLabel: { formatter: (value) => forPeople(value) } },
       series: [{ name: "all points", type: "scatter", symbolSize: 8, itemStyle: { opacity: 0.45 }, data: this.points.map(dot) },
                { name: "Pareto front", type: "line", step: "end", symbolSize: 9, data: front.map(dot) }],
     }, true);
     this.table.replaceChildren();
-    addTable(this.table, [...this.sweep.keys, this.cost, "rays/s"],
+    addTable(this.table, [...this.sweep.keys, this.cost, title],
              front.map((point) => [...this.sweep.keys.map((key) => ({ text: String(point.inputs[key]) })), cost(point), gain(point)]));
   }
 }
@@ -170,16 +177,19 @@ function showSweep(sweep) {
   document.getElementById("subtitle").textContent = Object.entries(sweep.base).map(([key, value]) => `${key} = ${value}`).join(", ");
   const figures = [[count("done"), "points done"], [count("failed"), "failed"], [count("missing"), "not run yet"]].map(([number, text]) => [String(number), text]);
   if (points.length) {
-    const best = points.reduce((a, b) => (b.results.rays_per_second > a.results.rays_per_second ? b : a));
-    figures.push([forPeople(best.results.rays_per_second), `rays/s at most: ${describe(best.inputs, sweep.keys)}`]);
+    const gain = gainOf(points);
+    const best = points.reduce((a, b) => (b.results[gain.key] > a.results[gain.key] ? b : a));
+    if (gain.key in best.results)
+      figures.push([forPeople(best.results[gain.key]), `${gain.title} at most: ${describe(best.inputs, sweep.keys)}`]);
   }
   addFigures(figures);
+  const hasGain = points.length > 0 && points.every((point) => gainOf(points).key in point.results);
   if (points.length && sweep.axes.length) {
     const all = Object.keys(points[0].results);
     const names = [...kHeadline.filter((name) => all.includes(name)), ...all.filter((name) => !kHeadline.includes(name))];
     new AxisPlot(sweep, points, names);
     const costs = costsOf(points);
-    if (Object.keys(costs).length) new ParetoPlot(sweep, points, costs);
+    if (hasGain && Object.keys(costs).length) new ParetoPlot(sweep, points, costs);
     showPoints(sweep, names);
   } else {
     showPoints(sweep, points.length ? Object.keys(points[0].results) : []);

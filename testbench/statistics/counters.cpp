@@ -149,6 +149,25 @@ const Counters<RunCounts>& firmware_counters() {
   return counters;
 }
 
+const Counters<WorkDone>& work_counters() {
+  using Work = WorkDone;
+  static const Counters<Work> counters = {
+      {{"amount", "-", "what the firmware says it did, in work.unit"},
+       [](const Work& work) { return Json(work.amount); }},
+      {{"unit", "-", "what the firmware counts its work in", CounterKind::derived},
+       [](const Work& work) { return Json(work.unit); }},
+      {{"per_second", "-", "work by simulated_seconds; null for a native run", CounterKind::derived},
+       [](const Work& work) { return work.chip ? Json(work.amount / work.chip->seconds()) : Json(); }},
+      {{"per_second_with_host", "-", "the same by the time that includes upload and download",
+        CounterKind::derived},
+       [](const Work& work) { return work.chip ? Json(work.amount / work.chip->total_seconds()) : Json(); }},
+      {{"per_joule", "-", "work by the energy of chip and DDR; null for a native run", CounterKind::derived},
+       [](const Work& work) {
+         return work.chip ? Json(work.amount / energy_of(*work.chip).joules()) : Json();
+       }}};
+  return counters;
+}
+
 const std::vector<Counter>& all_counters() {
   static const std::vector<Counter> counters = [] {
     std::vector<Counter> all;
@@ -161,17 +180,29 @@ const std::vector<Counter>& all_counters() {
   return counters;
 }
 
+const std::vector<Counter>& all_work_counters() {
+  static const std::vector<Counter> counters = [] {
+    std::vector<Counter> all;
+    append("work.", work_counters(), all);
+    return all;
+  }();
+  return counters;
+}
+
 const Counter* find_counter(std::string_view key) {
-  for (const Counter& counter : all_counters())
-    if (matches(counter.key, key)) return &counter;
+  for (const std::vector<Counter>* const counters : {&all_counters(), &all_work_counters()})
+    for (const Counter& counter : *counters)
+      if (matches(counter.key, key)) return &counter;
   return nullptr;
 }
 
 std::string describe_counters() {
+  std::vector<Counter> all = all_counters();
+  all.insert(all.end(), all_work_counters().begin(), all_work_counters().end());
   std::size_t key_width = 0;
-  for (const Counter& counter : all_counters()) key_width = std::max(key_width, counter.key.size());
+  for (const Counter& counter : all) key_width = std::max(key_width, counter.key.size());
   std::ostringstream out;
-  for (const Counter& counter : all_counters())
+  for (const Counter& counter : all)
     out << std::left << std::setw(int(key_width) + 2) << counter.key << std::setw(11) << counter.unit
         << counter.meaning << (counter.kind == CounterKind::derived ? " (derived)" : "") << '\n';
   return out.str();

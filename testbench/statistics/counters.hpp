@@ -49,13 +49,23 @@ struct KernelOnArray {
   int num_pes;
 };
 
+/// What a firmware outside this tree says it did, and the chip that it did it on; nullptr for a native run.
+struct WorkDone {
+  double amount;
+  std::string unit;
+  const ChipStatistics* chip;
+};
+
 const Counters<RenderResult>& run_counters();                 ///< keys begin at the file's root
 const Counters<path_tracer::RunCounts>& firmware_counters();  ///< "counts."
 const Counters<ChipStatistics>& chip_counters();              ///< "chip."
 const Counters<KernelOnArray>& kernel_counters();             ///< "chip.pe_array.kernels.*."
+const Counters<WorkDone>& work_counters();                    ///< "work.", in statistics of `csx600 run` only
 
-/// Every declaration, with whole keys, in the order of the file.
+/// Every declaration of a render's, with whole keys, in the order of the file.
 const std::vector<Counter>& all_counters();
+/// The declarations that only a run of a firmware outside this tree has.
+const std::vector<Counter>& all_work_counters();
 /// The declaration of a value in the statistics file; nullptr if it has none (what the run was asked to do).
 const Counter* find_counter(std::string_view key);
 

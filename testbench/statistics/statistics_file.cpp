@@ -46,19 +46,27 @@ bool has(const Json& json, std::string key) {
   return json.contains(Json::json_pointer("/" + key));
 }
 
+bool is_of_plug_in(const Json& json) {
+  return json.contains("format") && json["format"] == kRunStatisticsFormat;
+}
+
+void require_key(const Json& json, const std::string& key, const std::string& origin) {
+  if (!has(json, key))
+    throw InputError(origin + ": " + key + ": missing; allowed is a whole statistics file");
+}
+
 /// Throws InputError when a counter that every such run has is missing.
 void require_counters(const Json& json, const std::string& origin, bool with_simulator) {
-  for (const char* key : {"scene", "firmware", "machine", "chip_preset", "chip_config", "image_sha256"})
-    if (!has(json, key))
-      throw InputError(origin + ": " + key + ": missing; allowed is a whole statistics file");
+  const bool of_plug_in = is_of_plug_in(json);
+  for (const std::string key : {"scene", "firmware", "machine", "chip_preset", "chip_config", "image_sha256"})
+    if (!of_plug_in || (key != "scene" && key != "image_sha256")) require_key(json, key, origin);
   const bool native = json["machine"] == "native";
   for (const Counter& counter : all_counters()) {
     const bool of_chip = counter.key.rfind("chip.", 0) == 0;
     const bool of_simulator = counter.key.rfind(std::string(kSimulatorSection) + ".", 0) == 0;
     if (counter.key.find('*') != std::string::npos || (native && of_chip)) continue;
-    if (of_simulator && !with_simulator) continue;
-    if (!has(json, counter.key))
-      throw InputError(origin + ": " + counter.key + ": missing; allowed is a whole statistics file");
+    if ((of_simulator && !with_simulator) || (of_plug_in && !of_chip)) continue;
+    require_key(json, counter.key, origin);
   }
 }
 
@@ -85,6 +93,28 @@ const Schema& run_schema() {
   return schema;
 }
 
+/// The same of a firmware outside this tree.
+const Schema& plug_in_schema() {
+  static const Schema schema = {
+      {"format", JsonType::text},
+      {"firmware", JsonType::object},
+      {"firmware.name", JsonType::text},
+      {"firmware.options", JsonType::object},
+      {"firmware.options.*", JsonType::scalar, false},
+      {"firmware.counters", JsonType::list},
+      {"firmware.counters.*.name", JsonType::text},
+      {"firmware.counters.*.value", JsonType::number_or_none},
+      {"firmware.counters.*.unit", JsonType::text},
+      {"firmware.counters.*.meaning", JsonType::text},
+      {"work", JsonType::object, false},
+      {"machine", JsonType::text},
+      {"timing", JsonType::text},
+      {"chip_preset", JsonType::text},
+      {"chip_config", JsonType::object},
+  };
+  return schema;
+}
+
 /// The same of a run on the chip.
 const Schema& chip_schema() {
   static const Schema schema = {
@@ -103,16 +133,17 @@ const Schema& chip_schema() {
 /// Every counter that is there is a number; some that are derived are names.
 Schema counter_schema() {
   Schema schema;
-  for (const Counter& counter : all_counters())
-    schema.push_back({counter.key,
-                      counter.kind == CounterKind::derived ? JsonType::scalar : JsonType::number_or_none,
-                      false});
+  for (const std::vector<Counter>* const counters : {&all_counters(), &all_work_counters()})
+    for (const Counter& counter : *counters)
+      schema.push_back({counter.key,
+                        counter.kind == CounterKind::derived ? JsonType::scalar : JsonType::number_or_none,
+                        false});
   return schema;
 }
 
 /// Throws InputError for a value of another type than the schemas say.
 void require_statistics_types(const Json& json, const std::string& text, const std::string& origin) {
-  require_schema(json, run_schema(), text, origin);
+  require_schema(json, is_of_plug_in(json) ? plug_in_schema() : run_schema(), text, origin);
   if (json["machine"] != "native") require_schema(json, chip_schema(), text, origin);
   static const Schema counters = counter_schema();
   require_schema(json, counters, text, origin);
@@ -130,9 +161,10 @@ FlatStatistics flatten(const Json& statistics) {
 }
 
 void require_statistics_format(const std::string& format, const std::string& origin) {
-  if (format == kStatisticsFormat) return;
+  if (format == kStatisticsFormat || format == kRunStatisticsFormat) return;
   const bool is_older = format == "csx600-statistics-1";
-  throw InputError(origin + ": format: found '" + format + "', allowed is '" + kStatisticsFormat + "'" +
+  throw InputError(origin + ": format: found '" + format + "', allowed is '" + kStatisticsFormat + "' or '" +
+                   kRunStatisticsFormat + "'" +
                    (is_older ? "; an older csx600 wrote it, with other keys: run the render again" : ""));
 }
 

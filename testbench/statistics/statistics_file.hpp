@@ -8,9 +8,11 @@
 
 namespace testbench {
 
-inline constexpr const char* kStatisticsFormat = "csx600-statistics-2";
+inline constexpr const char* kStatisticsFormat = "csx600-statistics-2";  ///< of a render
+/// Of a firmware that `csx600 run` ran: its options and counters, its work, what the chip counted.
+inline constexpr const char* kRunStatisticsFormat = "csx600-run-1";
 
-/// Throws InputError, one line that names the file, for another format than kStatisticsFormat.
+/// Throws InputError, one line that names the file, for another format than these two.
 void require_statistics_format(const std::string& format, const std::string& origin);
 
 /// The values of a statistics file by key, in the order of the file: "chip_config.pio.setup_cycles". An

@@ -122,8 +122,8 @@ void PointStore::take_line(const std::string& line, std::size_t number, const st
                        "', or another directory (-o)");
     if (json["build"] != build)
       throw InputError(place +
-                       "build: found results of another build of csx600; allowed: this build's, or "
-                       "another directory (-o)");
+                       "build: found results of another build of csx600 or of the firmware; allowed: this "
+                       "build's, or another directory (-o)");
     return;
   }
   require_point(json, line, path_, number);
@@ -161,8 +161,9 @@ void PointStore::add(const std::string& id, Json result) {
   points_[id] = std::move(line);
 }
 
-std::string build_digest() {
-  return sha256(read_input_file("/proc/self/exe", "the program's own file")).substr(0, 32);
+std::string build_digest(const std::string& firmware_builds) {
+  const std::string program = sha256(read_input_file("/proc/self/exe", "the program's own file"));
+  return (firmware_builds.empty() ? program : sha256(program + firmware_builds)).substr(0, 32);
 }
 
 }  // namespace testbench

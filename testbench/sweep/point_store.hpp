@@ -10,8 +10,8 @@ namespace testbench {
 /// The finished points of a sweep in a file, a line of JSON each, which is written as soon as its point has
 /// finished: a sweep that was killed goes on from there. What a kill or a full disk cut off is dropped.
 ///
-/// One process at a time has the file; the first line says which build of the program wrote it, as another
-/// one's results may differ.
+/// One process at a time has the file; the first line says which build of the program wrote it, and of
+/// the firmware that it ran, as another one's results may differ.
 class PointStore {
  public:
   using Json = nlohmann::ordered_json;
@@ -44,7 +44,7 @@ class PointStore {
   std::map<std::string, Json> points_;
 };
 
-/// Names this build of the program: a digest of its executable.
-std::string build_digest();
+/// Names this build of the program, and of the firmwares outside it that it runs: a digest of their files.
+std::string build_digest(const std::string& firmware_builds);
 
 }  // namespace testbench

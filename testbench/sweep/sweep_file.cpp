@@ -5,6 +5,8 @@
 #include <set>
 
 #include "testbench/files/input_file.hpp"
+#include "testbench/plug_in/firmware_path.hpp"
+#include "testbench/plug_in/plug_in_settings.hpp"
 #include "testbench/run/toml_settings.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/system/error.hpp"
@@ -55,8 +57,8 @@ class SweepReader {
 
   Setting setting(const toml::node& node, const std::string& key, const std::string& value) const {
     Setting made{key, value, line_of(sweep_.path, node)};
-    const bool names_file =
-        key == "scene" || (key == "chip" && std::filesystem::path(value).extension() == ".toml");
+    const bool names_file = key == "scene" || (key == kFirmwareKey && is_firmware_file(value)) ||
+                            (key == "chip" && std::filesystem::path(value).extension() == ".toml");
     if (names_file && !std::filesystem::path(value).is_absolute())
       made.value = (std::filesystem::path(sweep_.path).parent_path() / value).lexically_normal().string();
     require_setting(made);
@@ -248,6 +250,7 @@ class SweepReader {
 }  // namespace
 
 void require_setting(const Setting& setting) {
+  if (is_plug_in_key(setting.key)) return;  // the firmware's own file says what is allowed
   if (!is_setting(setting.key)) require_current_key(setting.origin, setting.key);
   require_allowed(setting);
 }

@@ -30,6 +30,12 @@ struct SweepAxis {
 ///     [[axis]]                               # keys of one axis change together
 ///     chip.pes = { from = 16, to = 1024, factor = 2 }
 ///     ddr.banks = { from = 1, to = 8, count = 7 }     # evenly; or geometric = true
+///
+/// In place of a scene, a firmware that was built outside this tree, with its own options:
+///
+///     firmware = "libsaxpy.so"               # or the name of one that was installed with the program
+///     [[axis]]
+///     option.blocks = [1, 8, 64]
 struct SweepFile {
   std::string path;
   std::vector<Setting> base;
@@ -43,7 +49,8 @@ struct SweepFile {
 
 inline constexpr std::uint64_t kMostSweepPoints = 1'000'000;
 
-/// Throws InputError for an old or unknown key and for a value that is not allowed.
+/// Throws InputError for an old or unknown key and for a value that is not allowed. Options of a firmware
+/// outside this tree are left to Sweep, which loads it.
 void require_setting(const Setting& setting);
 
 /// Throws InputError that names the file, the line, the key, what was found and what is allowed.

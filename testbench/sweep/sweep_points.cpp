@@ -51,6 +51,7 @@ Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides, bool 
     base_.erase(std::remove_if(base_.begin(), base_.end(), is_same), base_.end());
     base_.push_back(setting);
   }
+  load_libraries(file);
   for (std::uint64_t number = 0; number < file.points(); ++number)
     points_.push_back(make_point(file, number));
   const auto cannot_run = [](const SweepPoint& point) { return !point.error.empty(); };
@@ -69,9 +70,16 @@ SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
     settings.insert(settings.end(), step.begin(), step.end());
     for (const Setting& setting : step) point.inputs.push_back(setting.value);
   }
-  std::optional<RunSettings> run;
+  const auto names_firmware = [](const Setting& setting) { return setting.key == kFirmwareKey; };
+  const auto firmware = std::find_if(settings.begin(), settings.end(), names_firmware);
+  std::optional<RunSettings> render;
+  std::optional<PlugInSettings> plug_in;
   try {
-    run = make_settings(settings);
+    if (firmware == settings.end()) {
+      render = make_settings(settings);
+    } else {
+      plug_in = make_plug_in_settings(libraries_.at(firmware->value), settings);
+    }
   } catch (const InputError& error) {
     point.error = error.what();
     std::string inputs;
@@ -79,13 +87,50 @@ SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
     point.id = short_digest(inputs);
     return point;
   }
-  const LoadedScene& loaded = scene_of(*run);
-  point.scene = &loaded.scene;
-  point.request = {run->scene, run->options, false};
-  point.id = short_digest(all_inputs(*run) + loaded.digest);
-  point.stream = short_digest(stream_inputs(*run) + loaded.digest);
+  render ? set_run(point, *render) : set_run(point, std::move(*plug_in));
   point.audited = is_audited(point.id, file);
   return point;
+}
+
+void Sweep::set_run(SweepPoint& point, const RunSettings& run) {
+  const LoadedScene& loaded = scene_of(run);
+  point.run = RenderPoint{{run.scene, run.options, false}, &loaded.scene};
+  point.id = short_digest(all_inputs(run) + loaded.digest);
+  point.stream = short_digest(stream_inputs(run) + loaded.digest);
+}
+
+void Sweep::set_run(SweepPoint& point, PlugInSettings&& run) {
+  point.id = short_digest(run.all_inputs);
+  point.stream = short_digest(run.stream_inputs);
+  point.run = std::move(run);
+}
+
+void Sweep::load_libraries(const SweepFile& file) {
+  std::vector<Setting> settings = base_;
+  for (const SweepAxis& axis : file.axes)
+    for (const std::vector<Setting>& step : axis.steps)
+      settings.insert(settings.end(), step.begin(), step.end());
+  for (const Setting& setting : settings)
+    if (setting.key == kFirmwareKey && libraries_.count(setting.value) == 0) {
+      try {
+        libraries_[setting.value] = std::make_shared<const SharedLibrary>(setting.value);
+      } catch (const InputError& error) {
+        throw InputError(setting.origin + ": " + error.what());
+      }
+    }
+  for (const Setting& setting : settings) {
+    if (!is_plug_in_key(setting.key) || setting.key == kFirmwareKey) continue;
+    if (libraries_.empty())
+      throw InputError(setting.origin + ": found '" + setting.key +
+                       "' without a firmware; allowed beside firmware = \"libNAME.so\"");
+    for (const auto& [name, library] : libraries_) require_option(*library, setting);
+  }
+}
+
+std::string Sweep::firmware_builds() const {
+  std::string builds;
+  for (const auto& [name, library] : libraries_) builds += library->build();
+  return builds;
 }
 
 const Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
@@ -100,6 +145,11 @@ const Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
     loaded->digest = scene_digest(loaded->scene);
   }
   return *loaded;
+}
+
+const model::ChipConfig& chip_of(const SweepPoint& point) {
+  if (const auto* const render = std::get_if<RenderPoint>(&point.run)) return render->request.options.chip;
+  return std::get<PlugInSettings>(point.run).options.chip;
 }
 
 std::string describe_point(const Sweep& sweep, const SweepPoint& point) {

@@ -3,12 +3,20 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "testbench/plug_in/plug_in_settings.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/sweep/sweep_file.hpp"
 
 namespace testbench {
+
+/// A render of a scene.
+struct RenderPoint {
+  RenderRequest request;
+  const Scene* scene = nullptr;
+};
 
 /// One combination of the axes' values.
 struct SweepPoint {
@@ -16,12 +24,11 @@ struct SweepPoint {
   std::string id;                   ///< digest of everything that decides its result
   std::string stream;               ///< digest of what decides the stream of calls; "" if there is none
   bool audited = false;             ///< replayed and run in full, and both must agree
-  RenderRequest request;
-  const Scene* scene = nullptr;
-  std::string error;  ///< why it cannot run, if its values do not fit each other
+  std::variant<RenderPoint, PlugInSettings> run;  ///< a firmware outside this tree is the alternative
+  std::string error;                              ///< why it cannot run, if its values do not fit each other
 };
 
-/// All points of a sweep, with the scenes they render.
+/// All points of a sweep, with the scenes they render or the firmware that they run.
 class Sweep {
  public:
   /// @param overrides take the place of the file's base values
@@ -32,6 +39,8 @@ class Sweep {
   const std::vector<std::vector<std::string>>& axes() const { return axes_; }  ///< their keys
   const std::vector<Setting>& base() const { return base_; }
   const std::vector<SweepPoint>& points() const { return points_; }
+  /// Names the builds of the firmwares that the points run; "" of renders.
+  std::string firmware_builds() const;
   /// Of every scene, by its path.
   const std::map<std::string, Notes>& notes() const { return notes_; }
 
@@ -41,17 +50,25 @@ class Sweep {
     std::string digest;
   };
 
+  /// Loads the firmwares that the file names and checks every value of their options.
+  void load_libraries(const SweepFile& file);
   SweepPoint make_point(const SweepFile& file, std::uint64_t number);
+  void set_run(SweepPoint& point, const RunSettings& run);
+  static void set_run(SweepPoint& point, PlugInSettings&& run);
   const LoadedScene& scene_of(const RunSettings& run);
 
   std::vector<std::string> keys_;
   std::vector<std::vector<std::string>> axes_;
   std::vector<Setting> base_;
   bool is_outside_allowed_;
-  std::map<std::string, std::unique_ptr<LoadedScene>> scenes_;  ///< by path and size
+  std::map<std::string, std::unique_ptr<LoadedScene>> scenes_;             ///< by path and size
+  std::map<std::string, std::shared_ptr<const SharedLibrary>> libraries_;  ///< by the file's name for them
   std::map<std::string, Notes> notes_;
   std::vector<SweepPoint> points_;
 };
+
+/// The chip that a point runs on.
+const model::ChipConfig& chip_of(const SweepPoint& point);
 
 /// "firmware.n=2, pio.setup_cycles=150"
 std::string describe_point(const Sweep& sweep, const SweepPoint& point);

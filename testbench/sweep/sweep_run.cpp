@@ -1,5 +1,7 @@
 #include "testbench/sweep/sweep_run.hpp"
 
+#include <unistd.h>
+
 #include <deque>
 #include <set>
 
@@ -8,6 +10,7 @@
 #include "testbench/sweep/sweep_plan.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/processes.hpp"
+#include "testbench/system/time_limit.hpp"
 #include "testbench/system/workers.hpp"
 
 namespace testbench {
@@ -24,7 +27,7 @@ constexpr const char* kStop = "stop";
 /// Answers orders for points, in worker processes and on other ranks.
 class PointServer {
  public:
-  explicit PointServer(const Sweep& sweep) : sweep_(sweep) {}
+  PointServer(const Sweep& sweep, double limit_seconds) : sweep_(sweep), limit_seconds_(limit_seconds) {}
 
   /// { point, id, replays } to { point, result: a PointStore line }. Does not throw.
   std::string answer(const std::string& text) {
@@ -42,7 +45,8 @@ class PointServer {
     const bool replays = order["replays"] && recording_;
     const PointMode mode = !replays ? PointMode::full : point.audited ? PointMode::audit : PointMode::replay;
     try {
-      return Json::parse(run_in_processes({[&] { return run_point(point, recording_.get(), mode); }}, 1)[0]);
+      const auto work = [&] { return run_point(point, recording_.get(), mode); };
+      return Json::parse(run_in_processes({work}, 1, {}, limit_seconds_)[0]);
     } catch (const std::exception& error) {
       return failed_point(error.what());
     }
@@ -52,16 +56,19 @@ class PointServer {
     if (stream_ == point.stream) return;
     stream_ = point.stream;
     recording_.reset();
+    // The end of this process is what is left to stop a firmware that never ends; the point fails by it.
+    const TimeLimit limit(limit_seconds_, [](const std::string&) { _exit(1); });
     try {
-      recording_ = std::make_unique<Recording>(record_render(*point.scene, point.request.options));
+      recording_ = std::make_unique<PointRecording>(record_point(point));
     } catch (const std::exception&) {
       // Run in full, each point says for itself what is wrong with it.
     }
   }
 
   const Sweep& sweep_;
+  double limit_seconds_;
   std::string stream_;
-  std::unique_ptr<Recording> recording_;  ///< null if that failed
+  std::unique_ptr<PointRecording> recording_;  ///< null if that failed
 };
 
 /// The first rank's part. Server 0 to jobs - 1 are its workers, -1, -2, ... the other ranks.
@@ -74,8 +81,8 @@ class SweepRun {
         left_(points_left()),
         plan_(sweep, left_, options.in_full) {
     const auto jobs = static_cast<int>(std::min(std::size_t(options.jobs), left_.size()));
-    workers_.emplace(jobs, [&sweep] {
-      const auto server = std::make_shared<PointServer>(sweep);
+    workers_.emplace(jobs, [&sweep, limit = options.limit_seconds] {
+      const auto server = std::make_shared<PointServer>(sweep, limit);
       return [server](const std::string& order) { return server->answer(order); };
     });
     for (int worker = 0; worker < jobs; ++worker) idle_.push_back(worker);
@@ -175,8 +182,8 @@ bool run_sweep(const Sweep& sweep, PointStore& store, const SweepRunOptions& opt
   return SweepRun(sweep, store, options, ranks).run(progress);
 }
 
-void serve_sweep(const Sweep& sweep, Ranks& ranks) {
-  PointServer server(sweep);
+void serve_sweep(const Sweep& sweep, Ranks& ranks, double limit_seconds) {
+  PointServer server(sweep, limit_seconds);
   ranks.send(0, kReady);
   for (std::string order = ranks.receive().bytes; order != kStop; order = ranks.receive().bytes)
     ranks.send(0, server.answer(order));

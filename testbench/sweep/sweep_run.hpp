@@ -9,8 +9,9 @@
 namespace testbench {
 
 struct SweepRunOptions {
-  int jobs = 1;          ///< processes at a time on this rank
-  bool in_full = false;  ///< no point is replayed
+  int jobs = 1;              ///< processes at a time on this rank
+  bool in_full = false;      ///< no point is replayed
+  double limit_seconds = 0;  ///< a point that takes longer fails; 0: no limit
 };
 
 /// Takes the finished share of the points that were left to do; returns false to stop.
@@ -24,6 +25,6 @@ bool run_sweep(const Sweep& sweep, PointStore& store, const SweepRunOptions& opt
                const SweepProgress& progress);
 
 /// What the other ranks do meanwhile: points that the first one hands out, until it has no more.
-void serve_sweep(const Sweep& sweep, Ranks& ranks);
+void serve_sweep(const Sweep& sweep, Ranks& ranks, double limit_seconds);
 
 }  // namespace testbench

@@ -55,18 +55,32 @@ Json headline(const Json& statistics) {
       number(statistics, "/chip/pio/bytes_mono_to_poly") + number(statistics, "/chip/pio/bytes_poly_to_mono");
   const double ddr_bytes =
       number(statistics, "/chip/ddr/bytes_read") + number(statistics, "/chip/ddr/bytes_written");
-  return {{"simulated_cycles", statistics["simulated_cycles"]},
-          {"simulated_seconds", seconds},
-          {"segments_per_second", ratio(number(statistics, "/segments"), seconds)},
-          {"rays_per_second", ratio(number(statistics, "/rays"), seconds)},
-          {"pio_utilisation", ratio(number(statistics, "/chip/pio/busy_cycles"), cycles)},
-          {"ddr_utilisation", ratio(number(statistics, "/chip/ddr/busy_cycles"), cycles)},
-          {"pio_bytes_per_ray", ratio(pio_bytes, number(statistics, "/rays"))},
-          {"ddr_bytes_per_ray", ratio(ddr_bytes, number(statistics, "/rays"))}};
+  Json line = {{"simulated_cycles", statistics["simulated_cycles"]}, {"simulated_seconds", seconds}};
+  const bool is_render = statistics.contains("rays");
+  if (is_render) {
+    line["segments_per_second"] = ratio(number(statistics, "/segments"), seconds);
+    line["rays_per_second"] = ratio(number(statistics, "/rays"), seconds);
+  }
+  line["pio_utilisation"] = ratio(number(statistics, "/chip/pio/busy_cycles"), cycles);
+  line["ddr_utilisation"] = ratio(number(statistics, "/chip/ddr/busy_cycles"), cycles);
+  if (is_render) {
+    line["pio_bytes_per_ray"] = ratio(pio_bytes, number(statistics, "/rays"));
+    line["ddr_bytes_per_ray"] = ratio(ddr_bytes, number(statistics, "/rays"));
+  }
+  return line;
+}
+
+/// The counters of a firmware outside this tree, under their names.
+void add_own_counters(const Json& statistics, Json& results) {
+  const Json::json_pointer place("/firmware/counters");
+  if (!statistics.contains(place)) return;
+  for (const Json& counter : statistics[place])
+    results["firmware." + counter["name"].get<std::string>()] = counter["value"];
 }
 
 Json results_of(const Json& statistics) {
   Json results = headline(statistics);
+  add_own_counters(statistics, results);
   Json inputs_left_out = statistics;
   for (const char* const input : {"width", "height", "firmware", "chip_config"}) inputs_left_out.erase(input);
   add_numbers(inputs_left_out, "", results);
@@ -81,7 +95,7 @@ Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
   if (line == nullptr) return json;
   if (line->contains("error")) json["error"] = (*line)["error"];
   if (!line->contains("statistics")) return json;
-  const model::ChipConfig& chip = point.request.options.chip;
+  const model::ChipConfig& chip = chip_of(point);
   json["results"] = results_of((*line)["statistics"]);
   json["results"]["total_sram_bytes"] = std::int64_t{chip.chip.pes} * chip.poly.sram_bytes;
   return json;

@@ -10,9 +10,11 @@
 #include <cstdio>
 #include <map>
 #include <new>
+#include <optional>
 
 #include "testbench/system/descriptor.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/system/time_limit.hpp"
 
 namespace testbench {
 namespace {
@@ -36,7 +38,12 @@ std::string read_all(int pipe) {
   return text;
 }
 
-[[noreturn]] void run_child(const std::function<std::string()>& job, int pipe) {
+[[noreturn]] void run_child(const std::function<std::string()>& job, int pipe, double limit_seconds) {
+  std::optional<TimeLimit> limit;
+  limit.emplace(limit_seconds, [pipe](const std::string& message) {
+    write_all(pipe, message);
+    _exit(run_error);
+  });
   Status status = succeeded;
   std::string text;
   try {
@@ -51,6 +58,7 @@ std::string read_all(int pipe) {
     status = run_error;
     text = error.what();
   }
+  limit.reset();
   if (write_all(pipe, text) != 0) status = run_error;
   close(pipe);
   _exit(status);
@@ -72,7 +80,7 @@ Children::const_iterator first_with_result(const Children& running) {
   return found != running.end() ? found : running.begin();
 }
 
-std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
+std::pair<pid_t, int> start_child(const std::function<std::string()>& job, double limit_seconds) {
   int ends[2];
   if (pipe(ends) != 0) throw RunError("cannot make a pipe: " + system_message(errno));
   std::fflush(nullptr);
@@ -82,7 +90,7 @@ std::pair<pid_t, int> start_child(const std::function<std::string()>& job) {
   if (child == 0) {
     end_with(parent);
     close(ends[0]);
-    run_child(job, ends[1]);
+    run_child(job, ends[1], limit_seconds);
   }
   close(ends[1]);
   return {child, ends[0]};
@@ -96,7 +104,8 @@ void end_with(pid_t parent) {
 }
 
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,
-                                          const std::function<void(int finished)>& done) {
+                                          const std::function<void(int finished)>& done,
+                                          double limit_seconds) {
   std::vector<std::string> results(jobs.size());
   Children running;
   std::size_t next = 0;
@@ -105,7 +114,7 @@ std::vector<std::string> run_in_processes(const std::vector<std::function<std::s
   std::string failure_text;
   while (!running.empty() || (next < jobs.size() && failure == succeeded)) {
     while (failure == succeeded && next < jobs.size() && running.size() < std::size_t(at_once)) {
-      const auto [child, pipe] = start_child(jobs[next]);
+      const auto [child, pipe] = start_child(jobs[next], limit_seconds);
       running[child] = {next++, pipe};
     }
     // A result may be longer than a pipe's buffer, so it is read before the child can end, and reaped then.

@@ -12,8 +12,10 @@ namespace testbench {
 /// order of `jobs`. SystemC elaborates once per process, so a command that makes several runs needs several
 /// processes. If a job throws InputError or RunError, this function throws the same after all running jobs
 /// have ended. `done` is called after each job.
+/// @param limit_seconds a job that takes longer fails with RunError; 0: no limit
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,
-                                          const std::function<void(int finished)>& done = {});
+                                          const std::function<void(int finished)>& done = {},
+                                          double limit_seconds = 0);
 
 /// Called in a child process: the operating system kills the child when `parent` ends, for whatever reason.
 void end_with(pid_t parent);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/examples/fft.hpp"
+#include "firmware/examples/firmwares.hpp"
 #include "firmware/examples/pio_sweep.hpp"
 #include "model/csx600.hpp"
 #include "testbench/system/error.hpp"
@@ -191,20 +192,14 @@ struct Job {
 };
 
 std::vector<Job> make_jobs(cn::Level level) {
-  examples::Dgemm::Problem dgemm;
-  dgemm.column_blocks = 2;
-  dgemm.panels = 60;
-  examples::MonteCarlo::Problem monte_carlo;
-  monte_carlo.kernels = 64;
-  constexpr int kImages = 4;
   const auto multiply = [=](const model::ChipConfig& chip) {
-    return run_example(chip, dgemm_run(dgemm, chip.chip.pes, level));
+    return run_example(chip, dgemm_run(examples::validated_dgemm(), chip.chip.pes, level));
   };
   const auto sample = [=](const model::ChipConfig& chip) {
-    return run_example(chip, monte_carlo_run(monte_carlo, chip.chip.pes, level));
+    return run_example(chip, monte_carlo_run(examples::validated_monte_carlo(), chip.chip.pes, level));
   };
   const auto transform = [=](const model::ChipConfig& chip) {
-    return run_example(chip, fft_run(kImages, level));
+    return run_example(chip, fft_run(examples::kValidatedFftImages, chip.chip.pes, level));
   };
   const auto sweep = [](const model::ChipConfig& chip) { return SweepRun(chip).run(); };
   return {{"DGEMM", kDesign, multiply},    {"DGEMM", kShipped, multiply},  {"Monte Carlo", kShipped, sample},

@@ -21,7 +21,7 @@ using Image = std::vector<Complex>;
 
 /// Transforms two images.
 std::vector<Image> transform(const std::vector<Image>& images, int num_pes = 96) {
-  testbench::ExampleRun run = fft_run(2, cn::narrowest_level());
+  testbench::ExampleRun run = fft_run(2, num_pes, cn::narrowest_level());
   for (std::size_t i = 0; i < 2; ++i)
     std::memcpy(run.mono.data() + i * examples::kImageBytes, images[i].data(), examples::kImageBytes);
   const std::vector<std::uint8_t> mono = run_natively(run, num_pes);
@@ -33,16 +33,16 @@ std::vector<Image> transform(const std::vector<Image>& images, int num_pes = 96)
 
 TEST(FftExample, OutputsAreTheSumsThatDefineThem) {
   for (const int num_pes : {32, 64, 96, 256}) {
-    const testbench::ExampleRun run = fft_run(2, cn::narrowest_level());
+    const testbench::ExampleRun run = fft_run(2, num_pes, cn::narrowest_level());
     EXPECT_EQ(verdict(run, run_natively(run, num_pes)), "") << num_pes;
   }
 }
 
 TEST(FftExample, LevelsAndPeCountsGiveTheSameBits) {
-  const auto first = run_natively(fft_run(2, cn::narrowest_level()), 96);
+  const auto first = run_natively(fft_run(2, 96, cn::narrowest_level()), 96);
   for (const cn::Level level : cn::usable_levels())
-    EXPECT_EQ(run_natively(fft_run(2, level), 96), first) << int(level);
-  EXPECT_EQ(run_natively(fft_run(2, cn::narrowest_level()), 64), first);
+    EXPECT_EQ(run_natively(fft_run(2, 96, level), 96), first) << int(level);
+  EXPECT_EQ(run_natively(fft_run(2, 64, cn::narrowest_level()), 64), first);
 }
 
 TEST(FftExample, ImpulseBecomesAWaveAndAWaveAnImpulse) {
@@ -87,7 +87,7 @@ TEST(FftExample, TwiceGivesTheMirroredImage) {
 }
 
 TEST(FftExample, CheckNoticesAWrongTransform) {
-  const testbench::ExampleRun run = fft_run(2, cn::narrowest_level());
+  const testbench::ExampleRun run = fft_run(2, 96, cn::narrowest_level());
   std::vector<std::uint8_t> mono = run_natively(run, 96);
   EXPECT_NE(verdict(run, run.mono), "");
   std::swap_ranges(mono.begin() + 4 * examples::kImageBytes,
@@ -97,9 +97,9 @@ TEST(FftExample, CheckNoticesAWrongTransform) {
 }
 
 TEST(FftExample, RefusesWhatItCannotDo) {
-  const testbench::ExampleRun one = fft_run(1, cn::narrowest_level());
+  const testbench::ExampleRun one = fft_run(1, 96, cn::narrowest_level());
   EXPECT_THROW(run_natively(one, 96), cn::MachineFault);
-  const testbench::ExampleRun two = fft_run(2, cn::narrowest_level());
+  const testbench::ExampleRun two = fft_run(2, 96, cn::narrowest_level());
   EXPECT_THROW(run_natively(two, 48), cn::MachineFault);
 }
 

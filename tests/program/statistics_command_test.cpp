@@ -210,15 +210,17 @@ TEST_F(StatisticsCommands, WrongUsageAndFilesEndWithTwo) {
   ordered_json other = ordered_json::parse(read("a.json"));
   other["format"] = "csx600-statistics-0";
   write("old.json", other.dump());
-  expect_error({"compare", "a.json", "old.json"}, 2,
-               "old.json: format: found 'csx600-statistics-0', allowed is 'csx600-statistics-2'");
+  expect_error(
+      {"compare", "a.json", "old.json"}, 2,
+      "old.json: format: found 'csx600-statistics-0', allowed is 'csx600-statistics-2' or 'csx600-run-1'");
   other["format"] = "csx600-statistics-1";
   write("old.json", other.dump());
   for (const std::vector<std::string>& command : {std::vector<std::string>{"stats", "old.json"},
                                                   {"compare", "a.json", "old.json"},
                                                   {"report", "old.json"}})
     expect_error(command, 2,
-                 "old.json: format: found 'csx600-statistics-1', allowed is 'csx600-statistics-2'; an older "
+                 "old.json: format: found 'csx600-statistics-1', allowed is 'csx600-statistics-2' or "
+                 "'csx600-run-1'; an older "
                  "csx600 wrote it, with other keys: run the render again");
   for (const char* tolerance :
        {"chip.*", "chip.*=", "=0.1", "chip.*=x", "chip.*=-1", "chip.*=nan", "chip.*=1y"})

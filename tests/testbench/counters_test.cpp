@@ -245,11 +245,13 @@ TEST_F(CountersOfRuns, FilesThatAreNoStatisticsAreRefusedByName) {
     EXPECT_EQ(refusal(part), "run.json:" + std::to_string(lines) +
                                  ": found no JSON object that is whole; allowed: a statistics file");
   }
-  EXPECT_EQ(refusal("{}"), "run.json: format: found 'no format', allowed is 'csx600-statistics-2'");
+  EXPECT_EQ(refusal("{}"),
+            "run.json: format: found 'no format', allowed is 'csx600-statistics-2' or 'csx600-run-1'");
   ordered_json other = ordered_json::parse(whole);
   other["format"] = "csx600-statistics-9";
-  EXPECT_EQ(refusal(other.dump()),
-            "run.json: format: found 'csx600-statistics-9', allowed is 'csx600-statistics-2'");
+  EXPECT_EQ(
+      refusal(other.dump()),
+      "run.json: format: found 'csx600-statistics-9', allowed is 'csx600-statistics-2' or 'csx600-run-1'");
   other = ordered_json::parse(whole);
   other["chip"]["pio"].erase("setup_cycles");
   EXPECT_EQ(refusal(other.dump()),

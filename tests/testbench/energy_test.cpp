@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "firmware/examples/firmwares.hpp"
 #include "model/config/chip_file.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/statistics/roofline.hpp"
@@ -38,10 +39,7 @@ class EnergyOfRuns : public test_support::SystemCFixture {
 
   /// The DGEMM that `csx600 validate` runs.
   static ExampleRun dgemm(const model::ChipConfig& config) {
-    examples::Dgemm::Problem problem;
-    problem.column_blocks = 2;
-    problem.panels = 60;
-    return testbench::dgemm_run(problem, config.chip.pes, testbench::widest_level());
+    return testbench::dgemm_run(examples::validated_dgemm(), config.chip.pes, testbench::widest_level());
   }
 };
 

@@ -153,14 +153,17 @@ TEST_F(Replay, OfAnotherWidthIsRefused) {
 /// Shows that an audit can find a difference.
 TEST_F(Replay, AnAuditFindsTheRecordingOfAnotherRun) {
   const Scene scene = small_cornell_box({8, 6});
-  testbench::SweepPoint point;
-  point.scene = &scene;
-  point.request = {"scene", render_options(Program::full, 1), false};
-  RenderOptions other = point.request.options;
+  const auto point_with = [&](const RenderOptions& options) {
+    testbench::SweepPoint made;
+    made.run = testbench::RenderPoint{{"scene", options, false}, &scene};
+    return made;
+  };
+  RenderOptions other = render_options(Program::full, 1);
   other.program.n = 2;
-  const Recording own = testbench::record_render(scene, point.request.options);
-  const Recording of_another = testbench::record_render(scene, other);
-  const auto audit = [&](const Recording& recording) {
+  const testbench::SweepPoint point = point_with(render_options(Program::full, 1));
+  const testbench::PointRecording own = testbench::record_point(point);
+  const testbench::PointRecording of_another = testbench::record_point(point_with(other));
+  const auto audit = [&](const testbench::PointRecording& recording) {
     return testbench::run_point(point, &recording, testbench::PointMode::audit);
   };
   EXPECT_NE(audit(own).find("\"audited\":true"), std::string::npos);

@@ -86,10 +86,11 @@ TEST_F(SweepFileTest, PointsHaveTheirSettingsAndTheirOwnNames) {
   ASSERT_EQ(sweep.points().size(), 4u);
   const testbench::SweepPoint& point = sweep.points()[2];
   EXPECT_EQ(point.inputs, (Values{"2", "10"}));
-  EXPECT_EQ(point.request.options.program.n, 2);
-  EXPECT_EQ(point.request.options.chip.pio.setup_cycles, 10);
-  EXPECT_EQ(point.request.options.chip.preset, "paper");
-  EXPECT_EQ(point.scene->film.width, 8);
+  const auto& run = std::get<testbench::RenderPoint>(point.run);
+  EXPECT_EQ(run.request.options.program.n, 2);
+  EXPECT_EQ(run.request.options.chip.pio.setup_cycles, 10);
+  EXPECT_EQ(run.request.options.chip.preset, "paper");
+  EXPECT_EQ(run.scene->film.width, 8);
   EXPECT_EQ(sweep.points()[0].stream, sweep.points()[1].stream);
   EXPECT_NE(sweep.points()[0].stream, sweep.points()[2].stream);
   EXPECT_NE(sweep.points()[0].id, sweep.points()[1].id);

@@ -110,13 +110,10 @@ class HazardChecker : public testing::Test {
   model::HazardChecker checker{machine, [this] { return cycle; }};
 };
 
-/// The last word of a PE's SRAM, then the first behind it, which another PE's lies in here.
 TEST_F(HazardChecker, KernelsThatLeaveTheSramAreNamed) {
-  const auto read_on_first_pe = [&](int offset_bytes) {
-    return hazard([&] { machine.run(kReads, FieldArguments{{offset_bytes}, 0}, only(0)); });
-  };
-  EXPECT_EQ(read_on_first_pe(1020), "");
-  EXPECT_EQ(read_on_first_pe(1024),
+  const auto read = [&](int at) { machine.run(kReads, FieldArguments{{at}, 0}, only(0)); };
+  EXPECT_EQ(hazard([&] { read(1020); }), "");
+  EXPECT_EQ(hazard([&] { read(1024); }),  // another PE's
             "hazard at cycle 1000: kernel 'reader' reads poly bytes 1024..1027 of PE 0, whose SRAM has 1024");
 }
 

@@ -87,19 +87,19 @@ void RunCommand::run() {
   if (!result.observation_failures.empty()) throw RunError(result.observation_failures);
 }
 
+std::string what_a_firmware_is() {
+  std::string names;
+  for (const std::string& name : installed_firmwares()) names += (names.empty() ? ": " : ", ") + name;
+  return "Shared library that csx600_add_firmware() built, or the name of one that comes with csx600" + names;
+}
+
 }  // namespace
 
 void add_run_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand(
       "run", "Run a firmware from a shared library, which may be built outside this tree");
   const auto state = std::make_shared<RunCommand>();
-  command
-      .add_option(
-          "firmware", state->library,
-          "Shared library that csx600_add_firmware() built, or the name of one that comes with csx600: "
-          "dgemm, fft, monte_carlo, pio_sweep, stream")
-      ->type_name("LIBRARY")
-      ->required();
+  command.add_option("firmware", state->library, what_a_firmware_is())->type_name("LIBRARY")->required();
   command
       .add_option("options", state->own_options,
                   "Behind --, the firmware's own options, --name value; -- --help lists them")

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <set>
@@ -114,14 +115,13 @@ std::unique_ptr<plug_in::Firmware> SharedLibrary::make_observed() const {
 
 void set_option(plug_in::Firmware& firmware, const std::string& option, const std::string& value,
                 const OptionSpelling& spelling) {
-  for (plug_in::OptionBase* const known : firmware.options()) {
-    if (known->name() != option) continue;
-    if (known->set(value)) return;
-    const std::string found = value.empty() ? "no value" : "'" + value + "'";
-    throw InputError(spelling.origin + spelling.prefix + option + ": found " + found + ", allowed is " +
-                     known->allowed_text());
-  }
-  refuse_option(firmware, option, spelling);
+  const auto has_name = [&](const plug_in::OptionBase* known) { return known->name() == option; };
+  const auto found = std::find_if(firmware.options().begin(), firmware.options().end(), has_name);
+  if (found == firmware.options().end()) refuse_option(firmware, option, spelling);
+  if ((*found)->set(value)) return;
+  throw InputError(spelling.origin + spelling.prefix + option + ": found " +
+                   (value.empty() ? "no value" : "'" + value + "'") + ", allowed is " +
+                   (*found)->allowed_text());
 }
 
 void set_options(plug_in::Firmware& firmware, const std::vector<std::string>& words) {

@@ -1,6 +1,6 @@
 // Two chips on one memory: they contend for it in the order of time, loosely as approximately timed.
 
-#include "examples/two_chips/shared_memory.hpp"
+#include "examples/platforms/shared_memory.hpp"
 
 #include <cmath>
 #include <memory>

@@ -3,17 +3,15 @@
 #include <cstdint>
 #include <memory>
 #include <systemc>
+#include <vector>
 
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
-#include "model/control/control_unit.hpp"
 #include "model/host_link/host_link.hpp"
 #include "model/memory/mono_ddr.hpp"
 #include "model/memory/on_chip_sram.hpp"
+#include "model/mtap_array.hpp"
 #include "model/network/clear_connect.hpp"
-#include "model/pe_array/pe_array.hpp"
-#include "model/pe_array/poly_sram.hpp"
-#include "model/pio/pio_engine.hpp"
 #include "model/time/clock_domain.hpp"
 
 namespace model {
@@ -32,6 +30,9 @@ enum class MonoMemory : std::uint8_t {
 ///     pe_array <-- poly_sram <-+        |                +---> on_chip_sram
 ///        control_unit (data cache) -----+
 ///        host_link ---------------------+
+///
+/// A CSX700 is the same with two arrays (chip.arrays), each with a control unit, PEs and a PIO engine of its
+/// own, that share network, memories and host link. Each array runs firmware of its own.
 class Csx600 : public sc_core::sc_module {
  public:
   explicit Csx600(const sc_core::sc_module_name& name, const ChipConfig& config,
@@ -43,22 +44,36 @@ class Csx600 : public sc_core::sc_module {
  public:
   const ClockDomain clock;
   const std::unique_ptr<EventQueue> event_queue;  ///< null when loosely timed
-  PeArray pe_array;
-  ControlUnit control_unit;
-  PolySram poly_sram;
-  PioEngine pio_engine;
+
+ private:
+  std::vector<std::unique_ptr<EventQueue>> event_queues_of_arrays_;  ///< of all arrays but the first
+  std::vector<std::unique_ptr<MtapArray>> arrays_;
+
+ public:
+  // Those of the first array:
+  PeArray& pe_array;
+  ControlUnit& control_unit;
+  PolySram& poly_sram;
+  PioEngine& pio_engine;
   ClearConnect clear_connect;
   const std::unique_ptr<MonoDdr> mono_ddr;         ///< null if the memory is bound outside
   const std::unique_ptr<OnChipSram> on_chip_sram;  ///< null if the chip has none
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }
+  int arrays() const { return static_cast<int>(arrays_.size()); }
+  MtapArray& array(int number) { return *arrays_.at(std::size_t(number)); }
+  const MtapArray& array(int number) const { return *arrays_.at(std::size_t(number)); }
   /// All zero if the memory is bound outside.
   DdrStatistics ddr_statistics() const { return mono_ddr ? mono_ddr->statistics() : DdrStatistics{}; }
   /// All zero if the chip has none.
   OnChipSramStatistics on_chip_sram_statistics() const {
     return on_chip_sram ? on_chip_sram->statistics() : OnChipSramStatistics{};
   }
+
+ private:
+  std::vector<std::unique_ptr<MtapArray>> built_arrays(TimingStyle timing);
+  void join(MtapArray& array);
 };
 
 }  // namespace model

@@ -1,12 +1,14 @@
 #include "model/csx600.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace model {
 namespace {
 
-std::unique_ptr<EventQueue> event_queue_for(TimingStyle timing, const ClockDomain& clock, const char* name) {
-  return timing == TimingStyle::approximately_timed ? std::make_unique<EventQueue>(name, clock) : nullptr;
+std::unique_ptr<EventQueue> event_queue_for(TimingStyle timing, const ClockDomain& clock) {
+  return timing == TimingStyle::approximately_timed ? std::make_unique<EventQueue>("event_queue", clock)
+                                                    : nullptr;
 }
 
 }  // namespace
@@ -16,8 +18,8 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
     : sc_module(name),
       config_(config),
       clock(config.chip.clock_hz),
-      event_queue(event_queue_for(timing, clock, "event_queue")),
-      arrays_(built_arrays(timing)),
+      event_queue(event_queue_for(timing, clock)),
+      arrays_(built_arrays()),
       pe_array(arrays_.front()->pe_array),
       control_unit(arrays_.front()->control_unit),
       poly_sram(arrays_.front()->poly_sram),
@@ -37,18 +39,23 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
     clear_connect.bind(on_chip_sram->socket, kOnChipSramRange, on_chip_sram_range(config_),
                        {config_.on_chip_sram.bytes_per_cycle, config_.on_chip_sram.hops});
   for (const std::unique_ptr<MtapArray>& array : arrays_) join(*array);
-  if (memory == MonoMemory::bound_outside || arrays() > 1)
-    for (const std::unique_ptr<MtapArray>& array : arrays_) array->control_unit.share_memory();
+  if (memory == MonoMemory::bound_outside || arrays() > 1) share_memory();
 }
 
-std::vector<std::unique_ptr<MtapArray>> Csx600::built_arrays(TimingStyle timing) {
+void Csx600::share_memory() {
+  for (const std::unique_ptr<MtapArray>& array : arrays_) array->control_unit.share_memory();
+}
+
+std::vector<std::unique_ptr<MtapArray>> Csx600::built_arrays() {
   std::vector<std::unique_ptr<MtapArray>> arrays;
   arrays.push_back(std::make_unique<MtapArray>("", config_, clock, event_queue.get()));
   for (int number = 1; number < config_.chip.arrays; ++number) {
     const std::string prefix = "array_" + std::to_string(number) + "_";
-    event_queues_of_arrays_.push_back(event_queue_for(timing, clock, (prefix + "event_queue").c_str()));
-    arrays.push_back(
-        std::make_unique<MtapArray>(prefix, config_, clock, event_queues_of_arrays_.back().get()));
+    if (event_queue)
+      event_queues_of_arrays_.push_back(
+          std::make_unique<EventQueue>((prefix + "event_queue").c_str(), *event_queue));
+    arrays.push_back(std::make_unique<MtapArray>(
+        prefix, config_, clock, event_queue ? event_queues_of_arrays_.back().get() : nullptr));
   }
   return arrays;
 }
@@ -64,6 +71,19 @@ void Csx600::join(MtapArray& array) {
   array.control_unit.host_traffic.bind(host_link.traffic);
   array.control_unit.follow(clear_connect.map());
   array.pio_engine.follow(clear_connect.map());
+}
+
+std::unique_ptr<Bridge> join_by_bridge(Csx600& near, Csx600& far, cn::MonoAddress first) {
+  std::string name = std::string(near.name()) + "_to_" + far.name();
+  std::replace(name.begin(), name.end(), '.', '_');
+  auto bridge = std::make_unique<Bridge>(name.c_str(), near.config(), near.event_queue.get());
+  const ChipConfig& config = near.config();
+  near.clear_connect.bind(bridge->near_socket, name, {first, far.config().ddr.size_bytes},
+                          {config.board.bridge_bytes_per_cycle, config.clear_connect.hops_to_ddr});
+  far.clear_connect.bind_initiator(bridge->far_socket);
+  near.share_memory();
+  far.share_memory();
+  return bridge;
 }
 
 }  // namespace model

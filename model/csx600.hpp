@@ -11,6 +11,7 @@
 #include "model/memory/mono_ddr.hpp"
 #include "model/memory/on_chip_sram.hpp"
 #include "model/mtap_array.hpp"
+#include "model/network/bridge.hpp"
 #include "model/network/clear_connect.hpp"
 #include "model/time/clock_domain.hpp"
 
@@ -61,6 +62,8 @@ class Csx600 : public sc_core::sc_module {
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }
+  /// Others than this chip may use its mono memory (ControlUnit::share_memory()).
+  void share_memory();
   int arrays() const { return static_cast<int>(arrays_.size()); }
   MtapArray& array(int number) { return *arrays_.at(std::size_t(number)); }
   const MtapArray& array(int number) const { return *arrays_.at(std::size_t(number)); }
@@ -72,8 +75,14 @@ class Csx600 : public sc_core::sc_module {
   }
 
  private:
-  std::vector<std::unique_ptr<MtapArray>> built_arrays(TimingStyle timing);
+  std::vector<std::unique_ptr<MtapArray>> built_arrays();
   void join(MtapArray& array);
 };
+
+/// Lets the arrays of `near` reach the DDR of `far` from mono address `first` on, over a bridge of near's
+/// board parameters. To be called before the run; both chips have one timing style. Firmware of both then
+/// waits for SystemC time before each access (ControlUnit::share_memory()). The bridge lives as long as they.
+/// Throws AddressMapError if near has another memory there.
+std::unique_ptr<Bridge> join_by_bridge(Csx600& near, Csx600& far, cn::MonoAddress first);
 
 }  // namespace model

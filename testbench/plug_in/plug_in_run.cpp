@@ -148,6 +148,9 @@ PlugInResult run_on_native_machine(Firmware& firmware, const PlugInOptions& opti
 }  // namespace
 
 PlugInResult run_plug_in(Firmware& firmware, const PlugInOptions& options) {
+  if (options.chip.board.chips != 1)
+    throw InputError("board.chips: found " + std::to_string(options.chip.board.chips) +
+                     "; allowed: 1, since a plug-in runs on one chip, on its first array");
   return with_plug_in_errors(firmware, [&] {
     firmware.prepare(options.chip.chip.pes);
     const std::uint64_t mono_bytes = place_buffers(firmware, options.chip.ddr.size_bytes);

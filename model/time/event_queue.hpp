@@ -62,7 +62,7 @@ class EventQueue : public sc_core::sc_module {
 
   ClockDomain clock_;
   EventQueue* runs_tasks_ = nullptr;  ///< the chip's, where it is not this one
-  Cycles first_ = 0;  ///< earlier cycles have no tasks left
+  Cycles first_ = 0;                  ///< earlier cycles have no tasks left
   std::array<std::vector<Task>, kNear> near_;
   std::array<std::uint64_t, kNear / 64> near_filled_{};  ///< one bit per list
   std::vector<FarEntry> far_;  ///< a heap; scheduled before the near tasks of the same cycle

@@ -23,8 +23,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+/// Of a board its sums: they move when a chip's counters do.
 bool is_kept(const std::string& key) {
   if (key == "image_sha256") return true;
+  if (key.rfind("chips.", 0) == 0) return false;
   const Counter* const counter = find_counter(key);
   return counter != nullptr && counter->kind == CounterKind::counted && group_of(key) != kSimulatorSection;
 }

@@ -1,4 +1,4 @@
-# What `cmake --install` installs: the program, and what firmware outside this tree is built with.
+# What `cmake --install` installs: the program, what firmware outside this tree is built with, and the chip's library.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -30,6 +30,12 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/csx600ConfigVersion.cmake
 install(FILES ${PROJECT_BINARY_DIR}/csx600Config.cmake ${PROJECT_BINARY_DIR}/csx600ConfigVersion.cmake
   firmware/kernels.cmake firmware/add_firmware.cmake firmware/plug_in.map DESTINATION ${package} COMPONENT development)
 
+# The chip as a plain sc_module, for platforms of others: csx600::chip. Its headers include SystemC's, so they have a folder
+# of their own; those of firmware stay free of it.
+install(TARGETS model model_timing firmware_cn EXPORT csx600_chip COMPONENT development)
+install(EXPORT csx600_chip NAMESPACE csx600:: DESTINATION ${package} FILE csx600ChipTargets.cmake COMPONENT development)
+install(DIRECTORY model DESTINATION ${headers}_chip COMPONENT development FILES_MATCHING PATTERN *.hpp)
+
 # Two Debian packages, `cpack --config build/release/CPackConfig.cmake`: the program; headers, library and CMake package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program development)
@@ -49,5 +55,6 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME csx600-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "csx600 (= ${PROJECT_VERSION}), g++ (>= 4:12), cmake (>= 3.25), make | ninja-build, pkg-config, binutils, libsleef-dev")
+  "csx600 (= ${PROJECT_VERSION}), g++ (>= 4:12), cmake (>= 3.25), make | ninja-build, pkg-config, binutils, libsleef-dev, \
+libsystemc-dev, libtomlplusplus-dev")
 include(CPack)

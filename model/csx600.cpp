@@ -1,5 +1,8 @@
 #include "model/csx600.hpp"
 
+#include <algorithm>
+#include <string>
+
 namespace model {
 namespace {
 
@@ -16,10 +19,11 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
       config_(config),
       clock(config.chip.clock_hz),
       event_queue(event_queue_for(timing, clock)),
-      pe_array("pe_array", config_),
-      control_unit("control_unit", config_, clock, pe_array, event_queue.get()),
-      poly_sram("poly_sram", config_, control_unit.poly_memory()),
-      pio_engine("pio_engine", config_, clock, control_unit.poly_memory(), event_queue.get()),
+      arrays_(built_arrays()),
+      pe_array(arrays_.front()->pe_array),
+      control_unit(arrays_.front()->control_unit),
+      poly_sram(arrays_.front()->poly_sram),
+      pio_engine(arrays_.front()->pio_engine),
       clear_connect("clear_connect", config_, clock, event_queue.get()),
       mono_ddr(memory == MonoMemory::ddr
                    ? std::make_unique<MonoDdr>("mono_ddr", config_, clock, event_queue.get())
@@ -28,25 +32,58 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
                        ? std::make_unique<OnChipSram>("on_chip_sram", config_, clock, event_queue.get())
                        : nullptr),
       host_link("host_link", config_, event_queue.get()) {
-  control_unit.pio.bind(pio_engine.port);
-  control_unit.mono_socket.bind(clear_connect.control_socket);
-  pio_engine.semaphores.bind(control_unit.semaphores);
-  pio_engine.time.bind(control_unit.time);
-  pio_engine.mono_socket.bind(clear_connect.pio_socket);
-  pio_engine.poly_socket.bind(poly_sram.pio_socket);
   host_link.socket.bind(clear_connect.host_socket);
   clear_connect.host_traffic.bind(host_link.traffic);
-  control_unit.host_traffic.bind(host_link.traffic);
-  if (mono_ddr) {
-    clear_connect.ddr_socket.bind(mono_ddr->socket);
-  } else {
-    control_unit.share_memory();
-  }
+  if (mono_ddr) clear_connect.ddr_socket.bind(mono_ddr->socket);
   if (on_chip_sram)
     clear_connect.bind(on_chip_sram->socket, kOnChipSramRange, on_chip_sram_range(config_),
                        {config_.on_chip_sram.bytes_per_cycle, config_.on_chip_sram.hops});
-  control_unit.follow(clear_connect.map());
-  pio_engine.follow(clear_connect.map());
+  for (const std::unique_ptr<MtapArray>& array : arrays_) join(*array);
+  if (memory == MonoMemory::bound_outside || arrays() > 1) share_memory();
+}
+
+void Csx600::share_memory() {
+  for (const std::unique_ptr<MtapArray>& array : arrays_) array->control_unit.share_memory();
+}
+
+std::vector<std::unique_ptr<MtapArray>> Csx600::built_arrays() {
+  std::vector<std::unique_ptr<MtapArray>> arrays;
+  arrays.push_back(std::make_unique<MtapArray>("", config_, clock, event_queue.get()));
+  for (int number = 1; number < config_.chip.arrays; ++number) {
+    const std::string prefix = "array_" + std::to_string(number) + "_";
+    if (event_queue)
+      event_queues_of_arrays_.push_back(
+          std::make_unique<EventQueue>((prefix + "event_queue").c_str(), *event_queue));
+    arrays.push_back(std::make_unique<MtapArray>(
+        prefix, config_, clock, event_queue ? event_queues_of_arrays_.back().get() : nullptr));
+  }
+  return arrays;
+}
+
+void Csx600::join(MtapArray& array) {
+  if (&array == arrays_.front().get()) {
+    array.control_unit.mono_socket.bind(clear_connect.control_socket);
+    array.pio_engine.mono_socket.bind(clear_connect.pio_socket);
+  } else {
+    array.control = clear_connect.bind_initiator(array.control_unit.mono_socket);
+    array.pio = clear_connect.bind_initiator(array.pio_engine.mono_socket);
+  }
+  array.control_unit.host_traffic.bind(host_link.traffic);
+  array.control_unit.follow(clear_connect.map());
+  array.pio_engine.follow(clear_connect.map());
+}
+
+std::unique_ptr<Bridge> join_by_bridge(Csx600& near, Csx600& far, cn::MonoAddress first) {
+  std::string name = std::string(near.name()) + "_to_" + far.name();
+  std::replace(name.begin(), name.end(), '.', '_');
+  auto bridge = std::make_unique<Bridge>(name.c_str(), near.config(), near.event_queue.get());
+  const ChipConfig& config = near.config();
+  near.clear_connect.bind(bridge->near_socket, name, {first, far.config().ddr.size_bytes},
+                          {config.board.bridge_bytes_per_cycle, config.clear_connect.hops_to_ddr});
+  far.clear_connect.bind_initiator(bridge->far_socket);
+  near.share_memory();
+  far.share_memory();
+  return bridge;
 }
 
 }  // namespace model

@@ -3,17 +3,16 @@
 #include <cstdint>
 #include <memory>
 #include <systemc>
+#include <vector>
 
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
-#include "model/control/control_unit.hpp"
 #include "model/host_link/host_link.hpp"
 #include "model/memory/mono_ddr.hpp"
 #include "model/memory/on_chip_sram.hpp"
+#include "model/mtap_array.hpp"
+#include "model/network/bridge.hpp"
 #include "model/network/clear_connect.hpp"
-#include "model/pe_array/pe_array.hpp"
-#include "model/pe_array/poly_sram.hpp"
-#include "model/pio/pio_engine.hpp"
 #include "model/time/clock_domain.hpp"
 
 namespace model {
@@ -32,6 +31,9 @@ enum class MonoMemory : std::uint8_t {
 ///     pe_array <-- poly_sram <-+        |                +---> on_chip_sram
 ///        control_unit (data cache) -----+
 ///        host_link ---------------------+
+///
+/// A CSX700 is the same with two arrays (chip.arrays), each with a control unit, PEs and a PIO engine of its
+/// own, that share network, memories and host link. Each array runs firmware of its own.
 class Csx600 : public sc_core::sc_module {
  public:
   explicit Csx600(const sc_core::sc_module_name& name, const ChipConfig& config,
@@ -43,22 +45,44 @@ class Csx600 : public sc_core::sc_module {
  public:
   const ClockDomain clock;
   const std::unique_ptr<EventQueue> event_queue;  ///< null when loosely timed
-  PeArray pe_array;
-  ControlUnit control_unit;
-  PolySram poly_sram;
-  PioEngine pio_engine;
+
+ private:
+  std::vector<std::unique_ptr<EventQueue>> event_queues_of_arrays_;  ///< of all arrays but the first
+  std::vector<std::unique_ptr<MtapArray>> arrays_;
+
+ public:
+  // Those of the first array:
+  PeArray& pe_array;
+  ControlUnit& control_unit;
+  PolySram& poly_sram;
+  PioEngine& pio_engine;
   ClearConnect clear_connect;
   const std::unique_ptr<MonoDdr> mono_ddr;         ///< null if the memory is bound outside
   const std::unique_ptr<OnChipSram> on_chip_sram;  ///< null if the chip has none
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }
+  /// Others than this chip may use its mono memory (ControlUnit::share_memory()).
+  void share_memory();
+  int arrays() const { return static_cast<int>(arrays_.size()); }
+  MtapArray& array(int number) { return *arrays_.at(std::size_t(number)); }
+  const MtapArray& array(int number) const { return *arrays_.at(std::size_t(number)); }
   /// All zero if the memory is bound outside.
   DdrStatistics ddr_statistics() const { return mono_ddr ? mono_ddr->statistics() : DdrStatistics{}; }
   /// All zero if the chip has none.
   OnChipSramStatistics on_chip_sram_statistics() const {
     return on_chip_sram ? on_chip_sram->statistics() : OnChipSramStatistics{};
   }
+
+ private:
+  std::vector<std::unique_ptr<MtapArray>> built_arrays();
+  void join(MtapArray& array);
 };
+
+/// Lets the arrays of `near` reach the DDR of `far` from mono address `first` on, over a bridge of near's
+/// board parameters. To be called before the run; both chips have one timing style. Firmware of both then
+/// waits for SystemC time before each access (ControlUnit::share_memory()). The bridge lives as long as they.
+/// Throws AddressMapError if near has another memory there.
+std::unique_ptr<Bridge> join_by_bridge(Csx600& near, Csx600& far, cn::MonoAddress first);
 
 }  // namespace model

@@ -10,14 +10,16 @@ namespace model {
 
 enum class PioArbitration : std::uint8_t { strict_fifo, reads_overtake_writes, queue_per_direction };
 
-/// Every number of the chip. Defaults, units, meaning, range, confidence and source of each are in the
-/// parameter table (chip_parameters.hpp), which is the only place that knows the keys.
+/// Every number of the chip, and of the board that it is on. Defaults, units, meaning, range, confidence and
+/// source of each are in the parameter table (chip_parameters.hpp), which is the only place that knows the
+/// keys.
 struct ChipConfig {
   std::string preset;
 
   struct Chip {
     double clock_hz;
-    int pes;
+    int pes;     ///< of an array
+    int arrays;  ///< each with a control unit and a PIO engine of its own, on one network
   } chip;
 
   struct Poly {
@@ -79,6 +81,14 @@ struct ChipConfig {
     int latency_cycles;  ///< from the arrival of a request to its first byte
     int hops;            ///< from an initiator to its port of the network
   } on_chip_sram;
+
+  /// The chips behind one host link, in a row: the link ends at the first, and bridges join neighbours.
+  struct Board {
+    int chips;
+    int bridge_bytes_per_cycle;  ///< each way
+    double bridge_clock_hz;
+    int bridge_latency_cycles;  ///< of the bridge's clock
+  } board;
 
   struct Host {
     double bytes_per_second;

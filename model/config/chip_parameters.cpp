@@ -90,7 +90,8 @@ bool is_allowed(const ParameterInfo& parameter, const ParameterValue& value) {
       [](const TrueOrFalse&) { return true; },
       [&](const IntegerRange& range) {
         const std::int64_t number = std::get<std::int64_t>(value);
-        return number >= range.low && number <= range.high && number % range.multiple_of == 0;
+        return number >= range.low && number <= range.high && number % range.multiple_of == 0 &&
+               (!range.power_of_two || (number & (number - 1)) == 0);
       },
       [&](const RealRange& range) {
         const double number = std::get<double>(value);
@@ -139,8 +140,8 @@ std::string allowed_text(const ParameterInfo& parameter) {
   const Overloaded describe{
       [](const TrueOrFalse&) { return std::string("true or false"); },
       [](const IntegerRange& range) {
-        const std::string text =
-            "an integer from " + std::to_string(range.low) + " to " + std::to_string(range.high);
+        const std::string text = (range.power_of_two ? "a power of two from " : "an integer from ") +
+                                 std::to_string(range.low) + " to " + std::to_string(range.high);
         return range.multiple_of == 1 ? text : text + ", a multiple of " + std::to_string(range.multiple_of);
       },
       [](const RealRange& range) {

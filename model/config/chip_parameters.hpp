@@ -43,6 +43,7 @@ struct IntegerRange {
   std::int64_t low;
   std::int64_t high;
   std::int64_t multiple_of = 1;
+  bool power_of_two = false;
 };
 struct RealRange {
   double low;

@@ -21,21 +21,18 @@ Preset csx600_250mhz() {
           {{"chip.clock_hz", "250000000", kVendor, "design clock [S5, S9]"},
            {"ddr.refresh_interval_cycles", "1950", kInferred, "7.8 us at 250 MHz [JESD79-2]"},
            {"ddr.refresh_cycles", "27", kInferred, "105 ns at 250 MHz, rounded up [JESD79-2]"},
+           {"board.bridge_clock_hz", "250000000", kAssumed, "as the chip's"},
            {"host.latency_cycles", "2500", kAssumed, "10 us at 250 MHz"}}};
 }
 
 Preset csx700() {
   return {
       "csx700",
-      "CSX700 of an e710 card, for exploration: its two 96-PE arrays as one array of 192 PEs in lock step, "
-      "which "
-      "the silicon is not; the two PIO engines as one of twice the speed; PEs as in the CSX600 (assumed)",
+      "CSX700 of an e710 card, for exploration: two arrays of 96 PEs on one network that share its memories, "
+      "each array as the CSX600's (assumed)",
       {{"chip.clock_hz", "250000000", kInferred, "96 GFLOPS [S11] / (192 PEs x 2)"},
-       {"chip.pes", "192", kInferred, "96 GFLOPS [S11] at 250 MHz; two arrays of 96 modelled as one"},
-       {"pio.per_pe_cycles", "8", kAssumed, "two engines, each serving its array"},
-       {"pio.bytes_per_cycle", "16", kAssumed, "two engines of 8 bytes a cycle"},
-       {"pio.misalignment_cycles", "4", kAssumed, "two engines, each serving its array"},
-       {"clear_connect.bytes_per_cycle", "16", kAssumed, "two nodes of 8 bytes a cycle"},
+       {"chip.arrays", "2", kInferred, "96 GFLOPS [S11] at 250 MHz are those of 192 PEs: two arrays of 96"},
+       {"board.bridge_clock_hz", "250000000", kAssumed, "as the chip's"},
        {"ddr.size_bytes", "2147483648", kVendor, "2 GB of DDR2-533 on the e710 card [S11]"},
        {"ddr.banks", "8", kAssumed, "two channels of 4 banks; number of channels not published"},
        {"ddr.bytes_per_cycle", "34", kInferred,

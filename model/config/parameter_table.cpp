@@ -43,7 +43,11 @@ void declare_chip(Parameters& table) {
                                                "X620/e620 boards 210 MHz [S7], design 250 MHz [S5]"));
   table.push_back(seen_by_firmware(
       integer<group, &Chip::pes>("chip.pes", "PEs", 96, {cn::kStripLanes, cn::kMaxPes, cn::kStripLanes},
-                                 Confidence::vendor, "processing elements of the array [S1]")));
+                                 Confidence::vendor, "processing elements of an array [S1]")));
+  table.push_back(seen_by_firmware(
+      integer<group, &Chip::arrays>("chip.arrays", "arrays", 1, {1, 4}, Confidence::vendor,
+                                    "arrays of PEs on one network, each with a control unit and a PIO "
+                                    "engine of its own: one [S1]")));
 }
 
 void declare_poly(Parameters& table) {
@@ -308,6 +312,25 @@ void declare_on_chip_sram(Parameters& table) {
       "from PIO engine, caches or host link to its port, as clear_connect.hops_to_ddr"));
 }
 
+void declare_board(Parameters& table) {
+  constexpr auto group = &ChipConfig::board;
+  constexpr Confidence assumed = Confidence::assumed;
+  using Board = ChipConfig::Board;
+  table.push_back(seen_by_firmware(integer<group, &Board::chips>(
+      "board.chips", "chips", 1, {1, 4, 1, true}, Confidence::stated,
+      "chips in a row behind one host link, each with a DDR; X620 and e620 have two [S5], the paper does not "
+      "say whether both worked")));
+  table.push_back(integer<group, &Board::bridge_bytes_per_cycle>(
+      "board.bridge_bytes_per_cycle", "bytes/cycle", 8, {1, 4096}, assumed,
+      "of the bridge between two chips, each way: bridge ports link chips [S1], their width is not public"));
+  table.push_back(
+      real<group, &Board::bridge_clock_hz>("board.bridge_clock_hz", "Hz", 210e6, {1e6, 1e10}, assumed,
+                                           "clock of the bridges, taken as the chip's: not public"));
+  table.push_back(integer<group, &Board::bridge_latency_cycles>(
+      "board.bridge_latency_cycles", "cycles", 20, {0, 1'000'000}, assumed,
+      "of the bridge's clock, from chip to chip: not public; taken as five hops of the network"));
+}
+
 void declare_host(Parameters& table) {
   constexpr auto group = &ChipConfig::host;
   using Host = ChipConfig::Host;
@@ -333,6 +356,7 @@ Parameters declare_parameters() {
   declare_ddr_geometry(table);
   declare_ddr_timing(table);
   declare_on_chip_sram(table);
+  declare_board(table);
   declare_host(table);
   declare_energy(table);
   return table;

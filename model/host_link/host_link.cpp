@@ -10,7 +10,11 @@
 namespace model {
 
 HostLink::HostLink(const sc_core::sc_module_name& name, const ChipConfig& config, EventQueue* event_queue)
-    : sc_module(name), clock_(config.chip.clock_hz), timing_(config), event_queue_(event_queue) {
+    : sc_module(name),
+      clock_(config.chip.clock_hz),
+      board_(config.board),
+      timing_(config),
+      event_queue_(event_queue) {
   traffic.bind(*this);
   if (event_queue_ == nullptr) return;
   at_initiator_ = std::make_unique<AtInitiator>(
@@ -34,6 +38,7 @@ Cycles HostLink::download(cn::MonoAddress from, void* to, std::uint64_t bytes, C
 
 Cycles HostLink::transfer(tlm::tlm_command command, cn::MonoAddress address, unsigned char* data,
                           std::uint64_t bytes, Cycles now) {
+  while (sending_ != nullptr) wait(answered_);  // another process's transfer; approximately timed only
   const Cycles start = std::max(now, *link_free_);
   const bool upload = command == tlm::TLM_WRITE_COMMAND;
   if (observer_ != nullptr) observer_->began_transfer(upload, bytes, start);
@@ -104,6 +109,7 @@ Cycles HostLink::wait_for_packets(HostPackets& packets, Cycles link_end) {
   send_due();
   while (!packets.at_end() || on_the_way_ > 0) wait(answered_);
   sending_ = nullptr;
+  answered_.notify(sc_core::SC_ZERO_TIME);
   return std::max(link_end, event_queue_->now());
 }
 

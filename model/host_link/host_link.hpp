@@ -38,6 +38,8 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   /// Several chips of one clock behind one link, as on the board: from now on transfers of this and of
   /// `other` take turns on it, in the order of the calls. To be called before the run.
   void share_link_of(const HostLink& other) { link_free_ = other.link_free_; }
+  /// The chip is behind so many bridges of the board; to be called once, before the run.
+  void cross_bridges(int bridges) { timing_.cross_bridges(bridges, board_); }
 
   /// Returns the cycle at which the last byte is there; the caller waits. Throws std::out_of_range when mono
   /// memory does not take all bytes.
@@ -66,6 +68,7 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
                                      sc_core::sc_time& delay);
 
   ClockDomain clock_;
+  ChipConfig::Board board_;
   HostLinkTiming timing_;
   std::shared_ptr<Cycles> link_free_ = std::make_shared<Cycles>(0);  ///< of all chips behind the link
   sc_core::sc_time free_at_;  ///< when the latest transfer of this chip is over

@@ -25,6 +25,15 @@ struct HostLinkTiming {
   Cycles data_cycles(std::uint64_t bytes) const {
     return Cycles(std::ceil(double(bytes) * clock_hz / bytes_per_second));
   }
+  /// From now on the bytes cross so many bridges of the board behind the link: each adds its latency to every
+  /// DMA, and the narrowest part sets the pace.
+  void cross_bridges(int bridges, const ChipConfig::Board& board) {
+    if (bridges == 0) return;
+    bytes_per_second = std::min(bytes_per_second, board.bridge_bytes_per_cycle * board.bridge_clock_hz);
+    latency_cycles +=
+        Cycles(std::ceil(double(bridges) * board.bridge_latency_cycles * clock_hz / board.bridge_clock_hz));
+  }
+
   Cycles dma_cycles(std::uint64_t bytes) const { return latency_cycles + data_cycles(bytes); }
 
   double clock_hz;

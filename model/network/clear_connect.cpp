@@ -22,8 +22,8 @@ ClearConnect::ClearConnect(const sc_core::sc_module_name& name, const ChipConfig
   register_socket(ddr_socket, Port::ddr);
 }
 
-Port ClearConnect::bind(tlm::tlm_target_socket<>& memory, const std::string& name, const cn::MonoRange& range,
-                        const PortConfig& config) {
+Port ClearConnect::bind(tlm::tlm_base_target_socket_b<>& memory, const std::string& name,
+                        const cn::MonoRange& range, const PortConfig& config) {
   map_.add(name, range);
   const Port port = timing_.add_port(config);
   more_memories_.push_back(std::make_unique<Joined<MemorySocket>>(name_of_joined(name).c_str()));
@@ -33,13 +33,13 @@ Port ClearConnect::bind(tlm::tlm_target_socket<>& memory, const std::string& nam
   return port;
 }
 
-Initiator ClearConnect::bind_initiator(tlm::tlm_initiator_socket<>& initiator) {
+Initiator ClearConnect::bind_initiator(tlm::tlm_base_initiator_socket_b<>& initiator) {
   const Initiator number = timing_.add_initiator();
   more_initiators_.push_back(std::make_unique<Joined<InitiatorSocket>>(
       name_of_joined("initiator_" + std::to_string(int(number))).c_str()));
   InitiatorSocket& socket = more_initiators_.back()->socket;
   register_socket(socket, number);
-  initiator.bind(socket);
+  socket.bind(initiator);
   return number;
 }
 

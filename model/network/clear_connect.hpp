@@ -43,12 +43,12 @@ class ClearConnect : public sc_core::sc_module {
   ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
                EventQueue* event_queue = nullptr);
 
-  /// Binds a memory at further addresses, before the simulation starts. Throws AddressMapError when the range
-  /// is empty or overlaps another.
-  Port bind(tlm::tlm_target_socket<>& memory, const std::string& name, const cn::MonoRange& range,
+  /// Binds a memory, by a target socket of any kind, at further addresses, before the simulation starts.
+  /// Throws AddressMapError when the range is empty or overlaps another.
+  Port bind(tlm::tlm_base_target_socket_b<>& memory, const std::string& name, const cn::MonoRange& range,
             const PortConfig& config);
   /// Binds an initiator beside the chip's own, with a link of its own, before the simulation starts.
-  Initiator bind_initiator(tlm::tlm_initiator_socket<>& initiator);
+  Initiator bind_initiator(tlm::tlm_base_initiator_socket_b<>& initiator);
   /// Which memory answers where. It grows with bind().
   const AddressMap& map() const { return map_; }
 

@@ -32,10 +32,23 @@ struct KernelStatistics {
   cn::IssueCounts issued;
   cn::IssueCounts executed;  ///< issued, each weighted by the PEs enabled
   PioWaits waited_before;    ///< since the kernel that ran before, whichever it was
-  /// [e]: runs that began with e PEs enabled, empty in total().
+  /// [e]: runs that began with e PEs enabled.
   std::vector<std::uint64_t> runs_by_enabled_pes;
   double issue_cycles = 0;         ///< before the code quality factor
   double enabled_lane_cycles = 0;  ///< issue_cycles, each weighted by the PEs enabled
+
+  /// Adds another kernel's numbers, or the same kernel's on another array; the name stays.
+  KernelStatistics& operator+=(const KernelStatistics& other) {
+    runs += other.runs, cycles += other.cycles;
+    issued += other.issued, executed += other.executed;
+    waited_before += other.waited_before;
+    if (runs_by_enabled_pes.size() < other.runs_by_enabled_pes.size())
+      runs_by_enabled_pes.resize(other.runs_by_enabled_pes.size());
+    for (std::size_t pes = 0; pes < other.runs_by_enabled_pes.size(); ++pes)
+      runs_by_enabled_pes[pes] += other.runs_by_enabled_pes[pes];
+    issue_cycles += other.issue_cycles, enabled_lane_cycles += other.enabled_lane_cycles;
+    return *this;
+  }
 
   /// Share of the issued lane-cycles in which a PE was enabled. Counts PEs as the kernel, its loops and its
   /// any-branches were entered; the branches of a plain poly if are not told apart.

@@ -109,15 +109,7 @@ std::vector<KernelStatistics> PeArray::kernels() const {
 KernelStatistics PeArray::total() const {
   KernelStatistics sum;
   sum.name = "total";
-  for (const KernelStatistics& kernel : kernels()) {
-    sum.runs += kernel.runs;
-    sum.cycles += kernel.cycles;
-    sum.issued += kernel.issued;
-    sum.executed += kernel.executed;
-    sum.waited_before += kernel.waited_before;
-    sum.issue_cycles += kernel.issue_cycles;
-    sum.enabled_lane_cycles += kernel.enabled_lane_cycles;
-  }
+  for (const KernelStatistics& kernel : kernels()) sum += kernel;
   return sum;
 }
 

@@ -18,6 +18,13 @@ EventQueue::EventQueue(const sc_core::sc_module_name& name, const ClockDomain& c
   place_ = last_in_time_->join();
 }
 
+EventQueue::EventQueue(const sc_core::sc_module_name& name, EventQueue& chip)
+    : sc_module(name),
+      clock_(chip.clock_),
+      runs_tasks_(&chip),
+      last_in_time_(chip.last_in_time_),
+      place_(last_in_time_->join()) {}
+
 void EventQueue::join_other_chips(const std::vector<sc_core::sc_object*>& objects) {
   for (sc_core::sc_object* const object : objects) {
     if (const auto* const other = dynamic_cast<const EventQueue*>(object); other != nullptr && other != this)
@@ -37,6 +44,7 @@ sc_core::sc_time EventQueue::delay_until(Cycles cycle) const {
 }
 
 void EventQueue::schedule(Cycles cycle, Task task) {
+  if (runs_tasks_ != nullptr) return runs_tasks_->schedule(cycle, std::move(task));
   if (entries_ == 0 && !running_) first_ = std::max(first_, now());
   cycle = std::max(cycle, first_);
   ++entries_;

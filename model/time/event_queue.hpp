@@ -20,6 +20,9 @@ class EventQueue : public sc_core::sc_module {
   using Task = std::function<void()>;  ///< up to two pointers are held without allocating
 
   EventQueue(const sc_core::sc_module_name& name, const ClockDomain& clock);
+  /// For the firmware of another array of the chip: its units' tasks are run by `chip`, in one order with all
+  /// others; the firmware has a turn of its own.
+  EventQueue(const sc_core::sc_module_name& name, EventQueue& chip);
 
   /// Runs `task` in `cycle`, or as soon as possible if that is over.
   void schedule(Cycles cycle, Task task);
@@ -58,7 +61,8 @@ class EventQueue : public sc_core::sc_module {
   void do_tasks_of(Cycles cycle);
 
   ClockDomain clock_;
-  Cycles first_ = 0;  ///< earlier cycles have no tasks left
+  EventQueue* runs_tasks_ = nullptr;  ///< the chip's, where it is not this one
+  Cycles first_ = 0;                  ///< earlier cycles have no tasks left
   std::array<std::vector<Task>, kNear> near_;
   std::array<std::uint64_t, kNear / 64> near_filled_{};  ///< one bit per list
   std::vector<FarEntry> far_;  ///< a heap; scheduled before the near tasks of the same cycle

@@ -174,7 +174,7 @@ void WaveProbe::commanded(int bank, DdrCommand command, std::uint64_t row, Cycle
 void WaveProbe::passed(Initiator initiator, bool to_ddr, Cycles start, Cycles finish) {
   const Stream stream = to_ddr ? to_ddr_stream : from_ddr_stream;
   const WaveSignal signal = to_ddr ? WaveSignal::clear_connect_to_ddr : WaveSignal::clear_connect_from_ddr;
-  change(stream, start, signal, std::uint64_t(initiator) + 1);
+  change(stream, start, signal, std::min(std::size_t(initiator), kInitiators) + 1);  // others are one
   change(stream, finish, signal, 0);
 }
 

@@ -119,14 +119,14 @@ void add_pio(Rows& rows) {
 }
 
 void add_memory(Rows& rows) {
-  const Names owners = {{0, "idle"}, {1, "pio"}, {2, "control"}, {3, "host"}};
+  const Names owners = {{0, "idle"}, {1, "pio"}, {2, "control"}, {3, "host"}, {4, "other"}};
   const Names directions = {{0, "idle"}, {1, "read"}, {2, "write"}};
   const Names commands = {{0, "none"}, {1, "activate"}, {2, "read"}, {3, "write"}, {4, "refresh"}};
   rows.insert(
       rows.end(),
-      {{Signal::clear_connect_to_ddr, "clear_connect", "to_ddr", 2, kNumber, kDetail, kChip, kOther,
+      {{Signal::clear_connect_to_ddr, "clear_connect", "to_ddr", 3, kNumber, kDetail, kChip, kOther,
         "whose requests or write data occupy the port to the DDR", kFixed, owners},
-       {Signal::clear_connect_from_ddr, "clear_connect", "from_ddr", 2, kNumber, kDetail, kChip, kOther,
+       {Signal::clear_connect_from_ddr, "clear_connect", "from_ddr", 3, kNumber, kDetail, kChip, kOther,
         "whose read data occupy the port from the DDR", kFixed, owners},
        {Signal::clear_connect_pio_bytes, "clear_connect", "pio_bytes", 64, kNumber, kUnits, kChip, kOther,
         "bytes so far that crossed the on-chip network for programmed I/O"},

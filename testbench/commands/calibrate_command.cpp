@@ -45,7 +45,7 @@ void print_row(const Assumptions& assumptions, const Calibration& result) {
 }
 
 Json to_json(const Assumptions& assumptions, const Calibration& result) {
-  Json json{{"assumption", assumptions.name}, {"chips", assumptions.chips}};
+  Json json{{"assumption", assumptions.name}, {"chips", assumptions.chip.board.chips}};
   for (const auto& [key, value] : result.constants.settings()) json["constants"][key] = value;
   json["converged"] = result.converged;
   json["iterations"] = result.iterations;
@@ -54,7 +54,7 @@ Json to_json(const Assumptions& assumptions, const Calibration& result) {
   const std::vector<PaperCell> cells = paper_cells();
   for (std::size_t i = 0; i < cells.size(); ++i)
     json["cells"].push_back({{"cell", cells[i].name()},
-                             {"model_seconds", result.seconds[i] / assumptions.chips},
+                             {"model_seconds", result.seconds[i]},
                              {"paper_seconds", cells[i].seconds()},
                              {"fitted", is_fitted(cells[i])}});
   return json;

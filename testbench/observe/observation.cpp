@@ -26,16 +26,32 @@ void require_writable(const ObservationOptions& options, const model::ChipConfig
     if (!file.empty()) require_writable(file);
 }
 
-Observation::Observation(const ObservationOptions& options, model::Csx600& chip) {
-  if (options.waves) observers_.add(waves_.emplace(*options.waves, chip).observer());
-  if (!options.transactions.empty()) observers_.add(transactions_.emplace(options.transactions, chip));
-  if (!options.timeline.empty()) observers_.add(timeline_.emplace(options.timeline, chip));
+ObservationOptions observation_of_array(const ObservationOptions& options, const model::Csx600& chip,
+                                        int array) {
+  const model::ChipConfig& config = chip.config();
+  if (config.board.chips == 1 && config.chip.arrays == 1) return options;
+  const std::string name = name_of_array(chip, array);
+  const auto named = [&](const std::filesystem::path& file) {
+    if (file.empty()) return file;
+    return file.parent_path() / (file.stem().string() + "." + name + file.extension().string());
+  };
+  ObservationOptions of_array = options;
+  if (of_array.waves) of_array.waves->file = named(of_array.waves->file);
+  of_array.transactions = named(options.transactions);
+  of_array.timeline = named(options.timeline);
+  return of_array;
+}
+
+Observation::Observation(const ObservationOptions& options, model::Csx600& chip, int array) {
+  if (options.waves) observers_.add(waves_.emplace(*options.waves, chip, array).observer());
+  if (!options.transactions.empty()) observers_.add(transactions_.emplace(options.transactions, chip, array));
+  if (!options.timeline.empty()) observers_.add(timeline_.emplace(options.timeline, chip, array));
   if (!options.any()) return;
   const bool only_waves = waves_ && !transactions_ && !timeline_;
   model::ChipObserver& observer = only_waves ? waves_->observer() : observers_;
-  chip.control_unit.set_observer(&observer, kSyncCycles);
-  chip.pio_engine.set_observer(&observer);
-  chip.host_link.set_observer(&observer);
+  chip.array(array).control_unit.set_observer(&observer, kSyncCycles);
+  chip.array(array).pio_engine.set_observer(&observer);
+  if (array == 0) chip.host_link.set_observer(&observer);
 }
 
 std::string Observation::finish() {

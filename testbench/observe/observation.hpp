@@ -15,11 +15,17 @@ namespace testbench {
 /// Throws InputError if a file cannot be written or the selection of waves is empty.
 void require_writable(const ObservationOptions& options, const model::ChipConfig& chip);
 
-/// The outputs that are written while a chip runs. Must be constructed before the run.
+/// The files of one array: those of `options`, with the array's name before the extension where the board has
+/// more than one: "a.csx600_1.vcd".
+ObservationOptions observation_of_array(const ObservationOptions& options, const model::Csx600& chip,
+                                        int array);
+
+/// The outputs that are written while an array runs, and of the chip's first array those of what all share:
+/// memories, network, host link. Must be constructed before the run.
 class Observation {
  public:
   /// Throws InputError as require_writable() does.
-  Observation(const ObservationOptions& options, model::Csx600& chip);
+  Observation(const ObservationOptions& options, model::Csx600& chip, int array = 0);
 
   /// Must be called after the run; completes each file. Does not throw, so that the run is not lost: returns
   /// one line for each file that is not complete, or an empty text.

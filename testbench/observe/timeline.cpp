@@ -41,7 +41,8 @@ bool is_wait(model::CycleCause cause) {
 
 }  // namespace
 
-Timeline::Timeline(const std::filesystem::path& file, const model::Csx600& chip) : chip_(chip), file_(file) {
+Timeline::Timeline(const std::filesystem::path& file, const model::Csx600& chip, int array)
+    : chip_(chip), control_unit_(chip.array(array).control_unit), file_(file) {
   buffer_ = R"({"displayTimeUnit":"ns","otherData":)" +
             Json{{"chip", chip.config().preset}, {"clock_hz", chip.config().chip.clock_hz}}.dump() +
             ",\"traceEvents\":[\n";
@@ -71,7 +72,7 @@ void Timeline::name_tracks() {
 void Timeline::spent(model::CycleCause cause, model::Cycles start, model::Cycles finish, int semaphore) {
   if (!is_wait(cause)) return;
   Json arguments;
-  if (semaphore >= 0) arguments["semaphore"] = chip_.control_unit.semaphore_name({semaphore});
+  if (semaphore >= 0) arguments["semaphore"] = control_unit_.semaphore_name({semaphore});
   add(Track::waits, model::cycle_cause_name(cause), "wait", start, finish, std::move(arguments));
 }
 

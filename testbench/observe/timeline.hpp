@@ -18,7 +18,7 @@ namespace testbench {
 class Timeline : public model::ChipObserver {
  public:
   /// Throws InputError if the file cannot be created.
-  Timeline(const std::filesystem::path& file, const model::Csx600& chip);
+  Timeline(const std::filesystem::path& file, const model::Csx600& chip, int array);
 
   void kernel_details(const model::KernelDetails& details) override { label_ = details.label; }
   void spent(model::CycleCause cause, model::Cycles start, model::Cycles finish, int semaphore) override;
@@ -38,6 +38,7 @@ class Timeline : public model::ChipObserver {
   void write(const nlohmann::ordered_json& event);
 
   const model::Csx600& chip_;
+  const model::ControlUnit& control_unit_;
   StreamedFile file_;
   std::string buffer_;
   bool first_ = true;

@@ -11,8 +11,8 @@ using Json = nlohmann::ordered_json;
 
 }  // namespace
 
-TransactionLog::TransactionLog(const std::filesystem::path& file, const model::Csx600& chip)
-    : chip_(chip), file_(file) {}
+TransactionLog::TransactionLog(const std::filesystem::path& file, const model::Csx600& chip, int array)
+    : control_unit_(chip.array(array).control_unit), file_(file) {}
 
 void TransactionLog::finished(const model::PioEvent& event) {
   open_.push_back({event, 0});
@@ -42,8 +42,7 @@ void TransactionLog::write(const Transaction& transaction) {
   line["kind"] = event.direction == cn::Direction::mono_to_poly ? "load" : "save";
   line["stage"] = event.label.stage == nullptr ? Json() : Json(event.label.stage);
   line["block"] = event.label.stage == nullptr ? Json() : Json(event.label.block);
-  line["semaphore"] =
-      event.semaphore < 0 ? Json() : Json(chip_.control_unit.semaphore_name({event.semaphore}));
+  line["semaphore"] = event.semaphore < 0 ? Json() : Json(control_unit_.semaphore_name({event.semaphore}));
   line["bytes"] = event.bytes;
   line["pes"] = event.pes;
   line["enqueued"] = event.enqueued;

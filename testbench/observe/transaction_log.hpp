@@ -25,7 +25,7 @@ namespace testbench {
 class TransactionLog : public model::ChipObserver {
  public:
   /// Throws InputError if the file cannot be created.
-  TransactionLog(const std::filesystem::path& file, const model::Csx600& chip);
+  TransactionLog(const std::filesystem::path& file, const model::Csx600& chip, int array);
 
   void spent(model::CycleCause cause, model::Cycles start, model::Cycles finish, int semaphore) override;
   void finished(const model::PioEvent& event) override;
@@ -44,7 +44,7 @@ class TransactionLog : public model::ChipObserver {
   void write_line(const std::string& line);
   void write_before(model::Cycles cycle);
 
-  const model::Csx600& chip_;
+  const model::ControlUnit& control_unit_;
   StreamedFile file_;
   std::string buffer_;
   std::deque<Transaction> open_;  ///< requests that the control unit may still wait for

@@ -17,10 +17,10 @@ constexpr std::uint64_t kViewPicoseconds = 300'000'000;
 /// neighbours are visible as well.
 constexpr std::size_t kBlocksInView = 4;
 
-model::MemoryCounters memory_counters(const model::Csx600& chip) {
+model::MemoryCounters memory_counters(const model::Csx600& chip, int array) {
   const model::DdrStatistics ddr = chip.ddr_statistics();
   return {ddr.page_hits, ddr.page_misses, ddr.bytes_read, ddr.bytes_written,
-          chip.clear_connect.statistics(model::Initiator::pio).bytes};
+          chip.clear_connect.statistics(chip.array(array).pio).bytes};
 }
 
 std::filesystem::path sibling(const std::filesystem::path& file, const std::string& suffix) {
@@ -68,18 +68,28 @@ void require_writable_waves(const WaveOptions& options, const model::ChipConfig&
   }
 }
 
-WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip)
-    : chip_(chip), file_(options.file), stream_(make_wave_stream(options.file)) {
+std::string name_of_array(const model::Csx600& chip, int array) {
+  return chip.arrays() == 1 ? chip.name() : std::string(chip.name()) + "_array_" + std::to_string(array);
+}
+
+WaveFiles::WaveFiles(const WaveOptions& options, model::Csx600& chip, int array)
+    : chip_(chip), array_(array), file_(options.file), stream_(make_wave_stream(options.file)) {
   model::WaveConfig config = options.config;
-  config.chip = chip.name();
+  config.chip = name_of_array(chip, array);
   try {
     probe_ = std::make_unique<model::WaveProbe>(
         sc_core::sc_gen_unique_name("wave_probe"), config, chip.config(),
-        [this](std::string_view text) { stream_->write(text); }, [&chip] { return memory_counters(chip); });
+        [this](std::string_view text) { stream_->write(text); },
+        [&chip, array] { return memory_counters(chip, array); });
   } catch (const model::WaveError& error) {
     throw InputError(error.what());
   }
+  if (array == 0) observe_shared_units();
+}
+
+void WaveFiles::observe_shared_units() {
   using model::WaveSignal;
+  model::Csx600& chip = chip_;
   if (probe_->shows(WaveSignal::clear_connect_to_ddr) || probe_->shows(WaveSignal::clear_connect_from_ddr))
     chip.clear_connect.set_observer(&*probe_);
   const bool shows_ddr = probe_->shows(WaveSignal::ddr_bus) || probe_->shows_ddr_commands();
@@ -108,7 +118,7 @@ std::vector<model::ValueName> WaveFiles::value_names(const model::WaveSignalInfo
       add_names(names, 1, probe_->bin_names());
       break;
     case model::WaveNames::semaphores:
-      add_names(names, 0, chip_.control_unit.semaphore_names());
+      add_names(names, 0, chip_.array(array_).control_unit.semaphore_names());
       break;
     default:
       break;
@@ -130,7 +140,7 @@ void WaveFiles::set_span(model::ViewOptions& view) const {
 void WaveFiles::write_view() const {
   model::ViewOptions view;
   view.view_file = sibling(file_, ".gtkw").filename().string();
-  view.chip = chip_.name();
+  view.chip = name_of_array(chip_, array_);
   view.wave_file = file_.filename().string();
   view.signals = probe_->signals();
   set_span(view);

@@ -21,11 +21,14 @@ std::vector<std::filesystem::path> files_beside_waves(const std::filesystem::pat
 /// Throws InputError if the trace or its view cannot be written, or if the selection or a window is empty.
 void require_writable_waves(const WaveOptions& options, const model::ChipConfig& chip);
 
+/// The chip's name, and of a chip with several arrays the number of the array: the root scope of its waves.
+std::string name_of_array(const model::Csx600& chip, int array);
+
 /// The waves of one run: the trace, a GTKWave view of its first blocks, and filters with the names of states
 /// and kernels.
 class WaveFiles {
  public:
-  WaveFiles(const WaveOptions& options, model::Csx600& chip);
+  WaveFiles(const WaveOptions& options, model::Csx600& chip, int array);
 
   model::ChipObserver& observer() { return *probe_; }
 
@@ -34,11 +37,13 @@ class WaveFiles {
   void finish();
 
  private:
+  void observe_shared_units();
   void write_view() const;
   std::vector<model::ValueName> value_names(const model::WaveSignalInfo& signal) const;
   void set_span(model::ViewOptions& view) const;
 
   model::Csx600& chip_;
+  int array_;
   std::filesystem::path file_;
   std::unique_ptr<OutputStream> stream_;
   std::unique_ptr<model::WaveProbe> probe_;

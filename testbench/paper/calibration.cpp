@@ -28,12 +28,6 @@ glm::dvec3 point_of(const FittedConstants& constants) {
           constants.transfer_call_cycles / kSteps[2]};
 }
 
-/// The seconds that one chip would take for the cell. With several chips, each does its share of the
-/// segments.
-double target_seconds(const PaperCell& cell, const Assumptions& assumptions) {
-  return cell.seconds() * assumptions.chips;
-}
-
 class Fit {
  public:
   Fit(const Assumptions& assumptions, const CalibrationOptions& options)
@@ -58,7 +52,7 @@ class Fit {
     const std::vector<double> found = seconds(constants_at(x), cells_);
     glm::dvec3 errors(0.0);
     for (glm::length_t i = 0; i < unknowns(); ++i)
-      errors[i] = found[std::size_t(i)] / target_seconds(cells_[std::size_t(i)], assumptions_) - 1;
+      errors[i] = found[std::size_t(i)] / cells_[std::size_t(i)].seconds() - 1;
     return errors;
   }
 
@@ -132,7 +126,7 @@ Calibration calibrate(const Assumptions& assumptions, const CalibrationOptions& 
   result.converged = largest(errors) < kConverged;
   result.constants = constants_at(x);
   result.seconds = fit.seconds(result.constants, paper_cells());
-  const PredictionError error = prediction_error(result.seconds, assumptions.chips);
+  const PredictionError error = prediction_error(result.seconds);
   result.mean_error = error.mean;
   result.worst_error = error.worst;
   return result;

@@ -26,7 +26,6 @@ struct Assumptions {
   model::ChipConfig chip;
   path_tracer::ProgramConfig program;
   Scene scene;
-  int chips = 1;                   ///< number of chips that share the paper's work
   bool fits_transfer_call = true;  ///< false: it keeps the value of `chip`, and its cell is predicted
 };
 

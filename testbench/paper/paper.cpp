@@ -64,12 +64,12 @@ bool is_fitted(const PaperCell& cell) {
                      [&](const PaperCell& other) { return cell.is_same_run(other); });
 }
 
-PredictionError prediction_error(const std::vector<double>& seconds, int chips) {
+PredictionError prediction_error(const std::vector<double>& seconds) {
   PredictionError result;
   const std::vector<PaperCell> cells = paper_cells();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (is_fitted(cells[i])) continue;
-    const double error = std::abs(seconds[i] / (cells[i].seconds() * chips) - 1);
+    const double error = std::abs(seconds[i] / cells[i].seconds() - 1);
     result.mean += error;
     result.worst = std::max(result.worst, error);
     ++result.cells;

@@ -52,8 +52,8 @@ struct PredictionError {
   double worst = 0;
   int cells = 0;
 };
-/// @param seconds seconds of all 24 cells, measured on one of `chips` chips that share the paper's work
-PredictionError prediction_error(const std::vector<double>& seconds, int chips = 1);
+/// @param seconds seconds of all 24 cells
+PredictionError prediction_error(const std::vector<double>& seconds);
 
 /// The firmware of the paper as this project reads it: one shadow ray for every segment, whatever its
 /// direction ("a single shadow ray per path segment"). The paper states neither the length of its bins nor

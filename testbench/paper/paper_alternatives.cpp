@@ -37,7 +37,7 @@ std::vector<Assumptions> paper_alternatives(const Assumptions& base, const Scene
   Assumptions& clock = add("clock of 250 MHz");
   set(clock, "chip.clock_hz", "250000000");
   set(clock, "ddr.refresh_interval_cycles", "1950");
-  add("both chips of the board").chips = 2;
+  set(add("both chips of the board"), "board.chips", "2");
   Assumptions& primitives = add("four times the triangles");
   primitives.scene = with_four_times_the_triangles(base.scene);
   add("closed box").scene = closed_box;

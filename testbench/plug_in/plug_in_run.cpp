@@ -182,6 +182,9 @@ void run_on_native_machine(Firmware& firmware, const PlugInOptions& options, std
 }  // namespace
 
 PlugInResult run_plug_in(Firmware& firmware, const PlugInOptions& options) {
+  if (options.chip.board.chips != 1)
+    throw InputError("board.chips: found " + std::to_string(options.chip.board.chips) +
+                     "; allowed: 1, since a plug-in runs on one chip, on its first array");
   return with_plug_in_errors(firmware, [&] {
     const SimulatorTimer timer;
     firmware.prepare(options.chip.chip.pes);

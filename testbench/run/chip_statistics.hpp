@@ -20,10 +20,11 @@ class Csx600;
 
 namespace testbench {
 
-/// Everything the chip counted in a run, copied out when it ended.
+/// Everything the chip counted in a run, copied out when it ended. Of a board, and of a chip with several
+/// arrays, counts are sums (merge()), cycles by cause those of all control units together.
 struct ChipStatistics {
-  model::ChipConfig config;
-  model::Cycles firmware_cycles = 0;  ///< from the firmware's start to its end
+  model::ChipConfig config;           ///< board.chips: of how many chips these are the counts
+  model::Cycles firmware_cycles = 0;  ///< from the first firmware's start to the last one's end
   model::Cycles total_cycles = 0;     ///< with upload and download
   model::ControlStatistics control;
   std::vector<model::KernelStatistics> kernels;
@@ -37,6 +38,11 @@ struct ChipStatistics {
   model::ClearConnectStatistics bus_host;
   model::HostLinkStatistics host_link;
 
+  /// Adds the counts of another chip, or of another array of this one, that ran beside it. `config` and both
+  /// times stay.
+  void merge(const ChipStatistics& other);
+
+  int arrays() const { return config.board.chips * config.chip.arrays; }
   double seconds() const { return double(firmware_cycles) / config.chip.clock_hz; }
   /// The same with upload and download.
   double total_seconds() const { return double(total_cycles) / config.chip.clock_hz; }
@@ -48,6 +54,17 @@ struct ChipStatistics {
   double ddr_bytes_per_second() const;
 };
 
+/// From the start of the first array's firmware to the end of the last one's.
+struct FirmwareSpan {
+  model::Cycles start;
+  model::Cycles end;
+
+  model::Cycles cycles() const { return end - start; }
+};
+FirmwareSpan firmware_span(const model::Csx600& chip);
+
+/// Of one chip.
+/// @param total_cycles with upload and download
 ChipStatistics collect_statistics(const model::Csx600& chip, model::Cycles total_cycles);
 
 /// As counters.hpp declares the counters.

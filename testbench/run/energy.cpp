@@ -29,7 +29,7 @@ class Causes {
     chip("poly_sram", executed(InstructionClass::sram) + executed(InstructionClass::sram_vector_load) +
                           scale_ * pio_words * table_.picojoules[std::size_t(InstructionClass::sram)]);
     chip("swazzle", executed(InstructionClass::swazzle) + executed(InstructionClass::swazzle_vector4));
-    chip("pe_clock", scale_ * table_.pe_clock_picojoules * run_.config.chip.pes * double(run_.total_cycles));
+    chip("pe_clock", scale_ * table_.pe_clock_picojoules * pes() * double(run_.total_cycles));
     chip("control_unit", scale_ * table_.control_unit_picojoules * double(busy_cycles()));
     chip("pio",
          scale_ * table_.pio_picojoules_per_byte * double(run_.pio.bytes_to_poly + run_.pio.bytes_to_mono));
@@ -38,7 +38,8 @@ class Causes {
              network(run_.config.on_chip_sram.hops, sram_bytes()));
     if (run_.on_chip_sram.accesses > 0)
       chip("on_chip_sram", scale_ * table_.on_chip_sram_picojoules_per_byte * sram_bytes());
-    chip("leakage", (table_.leakage_watts + table_.leakage_watts_per_pe * run_.config.chip.pes) * seconds_);
+    chip("leakage",
+         (table_.leakage_watts * run_.config.board.chips + table_.leakage_watts_per_pe * pes()) * seconds_);
     add_ddr();
     return std::move(causes_);
   }
@@ -47,6 +48,8 @@ class Causes {
   void chip(const std::string& name, double joules) { causes_.push_back({name, joules, false}); }
   void ddr(const std::string& name, double joules) { causes_.push_back({name, joules, true}); }
 
+  /// Of all arrays and chips.
+  int pes() const { return run_.config.chip.pes * run_.arrays(); }
   /// Energy of enabled PEs. The code quality factor stands for that many more instructions of the same mix.
   double executed(InstructionClass c) const {
     return scale_ * run_.config.poly.code_quality_factor * table_.picojoules[std::size_t(c)] *
@@ -79,7 +82,7 @@ class Causes {
     ddr("ddr_read", kPico * table_.ddr_read_picojoules * double(run_.ddr.bytes_read));
     ddr("ddr_write", kPico * table_.ddr_write_picojoules * double(run_.ddr.bytes_written));
     ddr("ddr_refresh", kPico * table_.ddr_refresh_picojoules * double(run_.ddr.refreshes));
-    ddr("ddr_background", table_.ddr_background_watts * seconds_);
+    ddr("ddr_background", table_.ddr_background_watts * run_.config.board.chips * seconds_);
   }
 
   const ChipStatistics& run_;

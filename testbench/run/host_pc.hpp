@@ -9,10 +9,17 @@
 
 namespace testbench {
 
-/// The computer that the board is in: uploads the scene, starts the firmware, fetches results while it runs.
+/// The computer that the board is in, as one array sees it: uploads the scene, starts the firmware, fetches
+/// results while it runs.
 class HostPc : public sc_core::sc_module {
  public:
-  HostPc(const sc_core::sc_module_name& name, model::Csx600& chip, const MonoImage& image, Film& film);
+  /// @param image without bytes where another array of the chip brings the scene
+  /// @param uploads_scene the host's side of that array; null if it is this one
+  HostPc(const sc_core::sc_module_name& name, model::Csx600& chip, model::ControlUnit& control_unit,
+         const MonoImage& image, Film& film, const HostPc* uploads_scene = nullptr);
+  /// Of the chip's first array.
+  HostPc(const sc_core::sc_module_name& name, model::Csx600& chip, const MonoImage& image, Film& film)
+      : HostPc(name, chip, chip.control_unit, image, film) {}
 
   /// Tells `checker`, which may be null, what the host fetches while the firmware runs.
   void report_reads_to(model::HazardChecker* checker) { checker_ = checker; }
@@ -23,12 +30,17 @@ class HostPc : public sc_core::sc_module {
 
  private:
   void run();
+  void upload();
   void fetch_results();
   void fetch_untimed_results();
   void wait_until(model::Cycles cycle);
   model::Cycles now() const { return chip_.clock.cycle_at(sc_core::sc_time_stamp()); }
 
   model::Csx600& chip_;
+  model::ControlUnit& control_unit_;
+  const HostPc* uploads_scene_;
+  bool scene_is_there_ = false;
+  sc_core::sc_event scene_came_;
   const MonoImage& image_;
   ResultReader results_;
   model::HazardChecker* checker_ = nullptr;

@@ -1,56 +1,15 @@
 #include "testbench/run/render.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <memory>
 
-#include "firmware/path_tracer/path_tracer.hpp"
 #include "model/config/address_map.hpp"
-#include "model/hazards/hazard_checker.hpp"
 #include "testbench/machine/native_machine.hpp"
 #include "testbench/machine/recording_machine.hpp"
-#include "testbench/mono_image/mono_image.hpp"
-#include "testbench/observe/observation.hpp"
-#include "testbench/run/host_pc.hpp"
-#include "testbench/run/results.hpp"
-#include "testbench/system/error.hpp"
-#include "testbench/system/simulator_time.hpp"
+#include "testbench/run/render_job.hpp"
 
 namespace testbench {
 namespace {
-
-/// What firmware and image builder refuse, as errors of the input.
-template <class Work>
-auto with_input_errors(Work&& work) {
-  try {
-    return work();
-  } catch (const path_tracer::ProgramError& error) {
-    throw InputError(error.what());
-  } catch (const cn::PolyMemoryOverflow& error) {
-    const std::string map = error.map().substr(0, error.map().find_last_not_of('\n') + 1);
-    throw InputError(std::string(error.what()) + "; buffers of a PE:", map);
-  } catch (const cn::MachineFault& fault) {
-    throw RunError(fault.what());
-  }
-}
-
-/// Tells the caller how far the firmware is, and the firmware whether the caller wants to stop.
-class ProgressRelay {
- public:
-  ProgressRelay(std::uint64_t paths, const RenderProgress& progress)
-      : total_(double(paths)), progress_(progress) {}
-
-  bool operator()(std::uint64_t paths_issued) {
-    if (progress_ && !progress_(double(paths_issued) / total_)) interrupted_ = true;
-    return !interrupted_;
-  }
-  bool interrupted() const { return interrupted_; }
-
- private:
-  double total_;
-  const RenderProgress& progress_;
-  bool interrupted_ = false;
-};
 
 /// @param what needs the memory: "scene and bins need "
 void require_mono_memory(const std::string& what, std::uint64_t bytes, const model::ChipConfig& chip) {
@@ -75,73 +34,6 @@ MonoImage make_checked_image(const Scene& scene, const RenderOptions& options) {
   return make_normal_mono_image(scene, options.chip.chip.pes, options.program);
 }
 
-std::uint64_t paths_of(const Scene& scene, const RenderOptions& options) {
-  if (!options.camera_samples.empty()) return options.camera_samples.size();
-  return std::uint64_t(scene.film.width) * std::uint64_t(scene.film.height) *
-         std::uint64_t(options.work.samples);
-}
-
-/// What both kinds of run have around the machine.
-class Run {
- public:
-  Run(const Scene& scene, const RenderOptions& options, const RenderProgress& progress)
-      : options_(options),
-        image_(checked_image(scene, options)),
-        relay_(paths_of(scene, options), progress),
-        result_(Film(scene.film, film_scale(scene), options.film_sums)) {}
-
-  const MonoImage& image() const { return image_; }
-  RenderResult& result() { return result_; }
-
-  /// Before anything runs on the machine. Returns the checker, or null when hazards are not to be checked.
-  model::HazardChecker* check_hazards(cn::Machine& machine, model::HazardChecker::Clock clock) {
-    if (!options_.check_hazards) return nullptr;
-    checker_.emplace(machine, std::move(clock));
-    for (const path_tracer::Layout::Region& region : image_.layout.regions)
-      checker_->name_mono(region.name, {region.first, region.bytes});
-    machine.set_access_observer(&*checker_);
-    return &*checker_;
-  }
-
-  /// Builds the firmware on a machine and runs it to its end.
-  void firmware(cn::Machine& machine) {
-    const path_tracer::Kernels& kernels =
-        checker_ ? path_tracer::observed_kernels() : path_tracer::kernels(options_.level);
-    path_tracer::Work work = options_.work;
-    work.listed_samples = image_.camera_samples.size();
-    path_tracer::PathTracer tracer(machine, kernels, options_.program, image_.layout, work);
-    tracer.run(std::ref(relay_));
-    result_.counts = tracer.counts();
-    if (checker_ && !relay_.interrupted()) checker_->firmware_ends();
-  }
-
-  RenderResult finish() {
-    if (checker_) checker_->throw_if_found();
-    result_.cpu_seconds = timer_.cpu_seconds();
-    result_.wall_seconds = timer_.wall_seconds();
-    if (relay_.interrupted()) throw RunError("interrupted; nothing was written");
-    require_no_rejected_samples(result_.film);
-    return std::move(result_);
-  }
-
- private:
-  static MonoImage checked_image(const Scene& scene, const RenderOptions& options) {
-    MonoImage image = options.image ? *options.image : make_checked_image(scene, options);
-    image.camera_samples = options.camera_samples;
-    if (!image.camera_samples.empty())
-      path_tracer::add_camera_samples(image.layout, image.camera_samples.size());
-    require_mono_memory(image, options.chip);
-    return image;
-  }
-
-  const RenderOptions& options_;
-  MonoImage image_;
-  ProgressRelay relay_;
-  RenderResult result_;
-  std::optional<model::HazardChecker> checker_;
-  SimulatorTimer timer_;
-};
-
 /// A machine without a clock; a recording one where a stream is wanted.
 std::unique_ptr<NativeMachine> native_machine(const model::ChipConfig& chip, std::uint64_t mono_bytes,
                                               TimingStream* record) {
@@ -161,6 +53,24 @@ void copy_to(NativeMachine& machine, const MonoImage& image) {
 
 }  // namespace
 
+std::uint64_t paths_of(const Scene& scene, const RenderOptions& options) {
+  if (!options.camera_samples.empty()) return options.camera_samples.size();
+  return std::uint64_t(scene.film.width) * std::uint64_t(scene.film.height) *
+         std::uint64_t(options.work.samples);
+}
+
+void add_list(MonoImage& image, const std::vector<path_tracer::CameraSampleRecord>& camera_samples) {
+  image.camera_samples = camera_samples;
+  if (!camera_samples.empty()) path_tracer::add_camera_samples(image.layout, camera_samples.size());
+}
+
+MonoImage image_for(const Scene& scene, const RenderOptions& options) {
+  MonoImage image = options.image ? *options.image : make_checked_image(scene, options);
+  add_list(image, options.camera_samples);
+  require_mono_memory(image, options.chip);
+  return image;
+}
+
 std::shared_ptr<const MonoImage> make_image(const Scene& scene, const RenderOptions& options) {
   return with_input_errors(
       [&] { return std::make_shared<const MonoImage>(make_checked_image(scene, options)); });
@@ -175,110 +85,15 @@ void require_mono_memory(const MonoImage& image, const model::ChipConfig& chip) 
   require_mono_memory("scene and bins need ", image.layout.total_bytes, chip);
 }
 
-RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
-                            const RenderProgress& progress) {
-  return with_input_errors([&] {
-    Run run(scene, options, progress);
-    model::Csx600 chip("csx600", options.chip, options.timing);
-    HostPc host("host", chip, run.image(), run.result().film);
-    host.report_reads_to(run.check_hazards(chip.control_unit, [&] { return chip.control_unit.now(); }));
-    Observation observation(options.observation, chip);
-    chip.control_unit.load([&](cn::Machine& machine) { run.firmware(machine); });
-    sc_core::sc_start();
-    chip.control_unit.require_finished();
-    if (!host.finished()) throw RunError("the firmware has ended, but the host has not");
-    run.result().chip = collect_statistics(chip, host.finished_cycle());
-    RenderResult result = run.finish();
-    result.observation_failures = observation.finish();
-    return result;
-  });
-}
-
 void search_natively(RenderOptions& options) {
   options.searches_natively = true;
   options.program.traversal = path_tracer::Traversal::brute_force;
 }
 
-namespace {
-
-/// One of the chips of a board, with its share of the samples.
-class BoardChip {
- public:
-  BoardChip(const std::string& name, const Scene& scene, const RenderOptions& share)
-      : options_(share),
-        run_(scene, options_, no_progress_),
-        chip_(name.c_str(), options_.chip, options_.timing),
-        host_((name + "_host").c_str(), chip_, run_.image(), run_.result().film) {
-    host_.report_reads_to(
-        run_.check_hazards(chip_.control_unit, [this] { return chip_.control_unit.now(); }));
-    chip_.control_unit.load([this](cn::Machine& machine) { run_.firmware(machine); });
-  }
-  model::Csx600& chip() { return chip_; }
-
-  RenderResult finish() {
-    chip_.control_unit.require_finished();
-    if (!host_.finished()) throw RunError("the firmware has ended, but the host has not");
-    run_.result().chip = collect_statistics(chip_, host_.finished_cycle());
-    return run_.finish();
-  }
-
- private:
-  RenderOptions options_;
-  RenderProgress no_progress_;
-  Run run_;
-  model::Csx600 chip_;
-  HostPc host_;
-};
-
-RenderOptions share_of(const RenderOptions& options, int chip, int chips) {
-  const auto first_of = [&](int i) { return int(std::int64_t(options.work.samples) * i / chips); };
-  RenderOptions share = options;
-  share.work.first_sample += first_of(chip);
-  share.work.samples = first_of(chip + 1) - first_of(chip);
-  return share;
-}
-
-void check_board(const RenderOptions& options, int chips) {
-  if (chips < 1) throw InputError("board: found " + std::to_string(chips) + " chips; allowed: 1 or more");
-  if (!options.camera_samples.empty())
-    throw InputError("board: found a list of samples; allowed: the same number for every pixel");
-  if (options.work.samples < chips)
-    throw InputError("board: found " + std::to_string(options.work.samples) + " samples a pixel for " +
-                     std::to_string(chips) + " chips; allowed: at least one a chip");
-}
-
-}  // namespace
-
-BoardRender render_on_board(const Scene& scene, const RenderOptions& options, int chips) {
-  check_board(options, chips);
-  return with_input_errors([&] {
-    std::vector<std::unique_ptr<BoardChip>> board;
-    for (int i = 0; i < chips; ++i) {
-      board.push_back(
-          std::make_unique<BoardChip>("csx600_" + std::to_string(i), scene, share_of(options, i, chips)));
-      board.back()->chip().host_link.share_link_of(board.front()->chip().host_link);
-    }
-    sc_core::sc_start();
-    BoardRender render{Film(scene.film, film_scale(scene), options.film_sums), 0, 0, {}};
-    model::Cycles start = board.front()->chip().control_unit.start_cycle();
-    model::Cycles end = 0;
-    for (const auto& one : board) {
-      const RenderResult result = one->finish();
-      render.film.merge(result.film);
-      render.segments += result.counts.segments;
-      render.chips.push_back(*result.chip);
-      start = std::min(start, one->chip().control_unit.start_cycle());
-      end = std::max(end, one->chip().control_unit.now());
-    }
-    render.firmware_cycles = end - start;
-    return render;
-  });
-}
-
 RenderResult render_natively(const Scene& scene, const RenderOptions& options, const RenderProgress& progress,
                              TimingStream* record) {
   return with_input_errors([&] {
-    Run run(scene, options, progress);
+    RenderJob run(scene, options, image_for(scene, options), progress);
     const path_tracer::Layout& layout = run.image().layout;
     const std::unique_ptr<NativeMachine> owned = native_machine(options.chip, layout.total_bytes, record);
     NativeMachine& machine = *owned;

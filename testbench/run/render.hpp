@@ -44,32 +44,20 @@ struct RenderResult {
 
   Film film;
   path_tracer::RunCounts counts;
-  std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip
-  std::string observation_failures;    ///< files that could not be completed, in one line
-  double cpu_seconds = 0;              ///< of the run itself, without loading and writing
+  std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip; of all chips of the board together
+  std::vector<ChipStatistics> chips = {};  ///< of each chip of a board; empty if there is one
+  std::string observation_failures;        ///< files that could not be completed, in one line
+  double cpu_seconds = 0;                  ///< of the run itself, without loading and writing
   double wall_seconds = 0;
 };
 
 /// Takes the share of camera paths issued; returns false to interrupt the run.
 using RenderProgress = std::function<bool(double share)>;
 
-/// A render on several chips of one board.
-struct BoardRender {
-  Film film;
-  std::uint64_t segments = 0;
-  model::Cycles firmware_cycles = 0;  ///< from the first firmware's start to the last one's end
-  std::vector<ChipStatistics> chips;
-
-  double seconds() const { return double(firmware_cycles) / chips.front().config.chip.clock_hz; }
-};
-
-/// The firmware on each of `chips` SystemC models with a DDR of its own, behind one host link: the samples of
-/// every pixel are divided among them, and the film is that of one chip. Chips of a board do not talk to each
-/// other, so the ClearConnect bridge between them is not modelled. Observes nothing. At most one a process.
-/// Throws InputError when there are fewer samples than chips, or a list of them.
-BoardRender render_on_board(const Scene& scene, const RenderOptions& options, int chips);
-
-/// The firmware on the SystemC model. At most one a process, as SystemC elaborates once.
+/// The firmware on the SystemC model: on each array of each chip of the board (board.chips, chip.arrays). The
+/// samples of every pixel are divided among the arrays, and the film is that of one array, to the bit. Chips
+/// have a DDR and a copy of the scene each, the arrays of a chip share both; all chips are behind one host
+/// link. At most one render a process, as SystemC elaborates once.
 /// Throws InputError for what does not fit the chip, RunError for a run that failed or was interrupted.
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
                             const RenderProgress& progress = {});

@@ -190,6 +190,11 @@ const std::vector<Counter>& all_work_counters() {
 }
 
 const Counter* find_counter(std::string_view key) {
+  constexpr std::string_view kOfChips = "chips.";
+  if (key.substr(0, kOfChips.size()) == kOfChips) {
+    const std::size_t dot = key.find('.', kOfChips.size());
+    return dot == std::string_view::npos ? nullptr : find_counter("chip" + std::string(key.substr(dot)));
+  }
   for (const std::vector<Counter>* const counters : {&all_counters(), &all_work_counters()})
     for (const Counter& counter : *counters)
       if (matches(counter.key, key)) return &counter;

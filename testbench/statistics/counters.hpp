@@ -67,6 +67,7 @@ const std::vector<Counter>& all_counters();
 /// The declarations that only a run of a firmware outside this tree has.
 const std::vector<Counter>& all_work_counters();
 /// The declaration of a value in the statistics file; nullptr if it has none (what the run was asked to do).
+/// Each chip of a board has the counters of "chip.": "chips.csx600_1.ddr.page_hits" is "chip.ddr.page_hits".
 const Counter* find_counter(std::string_view key);
 
 /// Name, unit and meaning of every counter.

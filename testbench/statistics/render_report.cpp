@@ -46,7 +46,8 @@ void add_energy_row(const RenderResult& result, Rows& rows) {
   const Energy energy = energy_of(*result.chip);
   const std::uint64_t rays = result.counts.segments + result.counts.shadow_rays;
   rows.emplace_back("energy", text("%.4g J", energy.joules()) +
-                                  text(" (%.1f W chip", energy.chip_joules() / energy.seconds) +
+                                  text(result.chips.empty() ? " (%.1f W chip" : " (%.1f W chips",
+                                       energy.chip_joules() / energy.seconds) +
                                   text(", %.1f W DDR)", energy.ddr_joules() / energy.seconds) +
                                   text(", %.0f rays/J", double(rays) / energy.joules()));
 }
@@ -61,8 +62,18 @@ void add_roofline_row(const ChipStatistics& chip, Rows& rows) {
                                     text(" at %.1f %%", 100 * roofline.nearest().share()));
 }
 
+/// "2 chips: 0.012 s and 61.2 % utilisation, ...": how evenly the work was divided.
+void add_board_row(const std::vector<ChipStatistics>& chips, Rows& rows) {
+  std::string row = std::to_string(chips.size()) + " chips";
+  for (const ChipStatistics& chip : chips)
+    row += (&chip == &chips.front() ? ": " : ", ") + text("%.6f s", chip.seconds()) +
+           text(" at %.1f %%", 100 * chip.pe_utilisation());
+  rows.emplace_back("board", row + " PE utilisation; counts are sums");
+}
+
 void add_chip_rows(const RenderResult& result, Rows& rows) {
   const ChipStatistics& chip = *result.chip;
+  if (!result.chips.empty()) add_board_row(result.chips, rows);
   rows.emplace_back("simulated time",
                     text("%.6f s", chip.seconds()) + text(" (%.0f cycles)", double(chip.firmware_cycles)));
   rows.emplace_back("simulated segments/s", text("%.0f", double(result.counts.segments) / chip.seconds()));
@@ -131,6 +142,8 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   json["image_sha256"] = result.film.sha256();
   json["counts"] = to_json(result.counts);
   if (result.chip) json["chip"] = to_json(*result.chip);
+  for (std::size_t i = 0; i < result.chips.size(); ++i)
+    json["chips"]["csx600_" + std::to_string(i)] = to_json(result.chips[i]);
   json[kSimulatorSection] = simulator;
   return json;
 }

@@ -83,13 +83,15 @@ Roofline roofline_of(const ChipStatistics& statistics) {
     roofline.roofs.push_back(
         {name, amount, seconds > 0 ? amount / seconds : 0, peak_per_cycle * config.chip.clock_hz});
   };
-  add("pe_array", flops_of(statistics.all_kernels.executed), peak_flops_per_cycle(config));
+  const int arrays = statistics.arrays();
+  add("pe_array", flops_of(statistics.all_kernels.executed), arrays * peak_flops_per_cycle(config));
   add("pio", double(statistics.pio.bytes_to_poly + statistics.pio.bytes_to_mono),
-      pio_bytes_per_cycle(config.pio));
+      arrays * pio_bytes_per_cycle(config.pio));
   add("clear_connect",
       double(statistics.bus_pio.bytes + statistics.bus_control.bytes + statistics.bus_host.bytes),
-      2 * config.clear_connect.bytes_per_cycle);
-  add("ddr", double(statistics.ddr.bytes_read + statistics.ddr.bytes_written), config.ddr.bytes_per_cycle);
+      2.0 * arrays * config.clear_connect.bytes_per_cycle);
+  add("ddr", double(statistics.ddr.bytes_read + statistics.ddr.bytes_written),
+      double(config.board.chips) * config.ddr.bytes_per_cycle);
   return roofline;
 }
 

@@ -37,6 +37,7 @@ struct Roofline {
 ///   pio            bytes a cycle of its engine, or of its two engines
 ///   clear_connect  bytes a cycle of a node's link, both ways
 ///   ddr            bytes a cycle of the data bus
+/// of all arrays and chips together.
 Roofline roofline_of(const ChipStatistics& statistics);
 
 /// Floating-point operations of one instruction in one PE.

@@ -4,6 +4,16 @@
 
 namespace testbench {
 
+namespace {
+
+/// A recording is the stream of one array.
+bool is_of_one_array(const SweepPoint& point) {
+  const model::ChipConfig& chip = point.request.options.chip;
+  return chip.board.chips * chip.chip.arrays == 1;
+}
+
+}  // namespace
+
 SweepPlan::SweepPlan(const Sweep& sweep, const std::vector<std::size_t>& left, bool in_full) {
   std::map<std::string, std::size_t> number_of;
   for (const std::size_t i : left) {
@@ -11,7 +21,9 @@ SweepPlan::SweepPlan(const Sweep& sweep, const std::vector<std::size_t>& left, b
     if (is_new) streams_.emplace_back();
     streams_[entry->second].left.push_back(i);
   }
-  for (Stream& stream : streams_) stream.replays = !in_full && stream.left.size() > 1;
+  for (Stream& stream : streams_)
+    stream.replays =
+        !in_full && stream.left.size() > 1 && is_of_one_array(sweep.points()[stream.left.front()]);
 }
 
 /// The server's own; else the one with the most points for each of those who would share it.

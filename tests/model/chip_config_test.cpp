@@ -133,7 +133,7 @@ std::size_t keys_of(const std::string& group) {
 // With ChangingAKeyChangesThatLineOnly below: as many keys as fields, each with a field of its own.
 TEST(ParameterTable, CoversEveryField) {
   const ChipConfig config = default_chip_config();
-  const auto& [preset, chip, poly, control, pio, clear_connect, ddr, on_chip_sram, host, energy] =
+  const auto& [preset, chip, poly, control, pio, clear_connect, ddr, on_chip_sram, board, host, energy] =
       config;  // a new group breaks this line
   EXPECT_EQ(preset, "csx600");
   EXPECT_EQ(keys_of("chip"), field_count<std::decay_t<decltype(chip)>>());
@@ -144,12 +144,24 @@ TEST(ParameterTable, CoversEveryField) {
   EXPECT_EQ(keys_of("clear_connect"), field_count<std::decay_t<decltype(clear_connect)>>());
   EXPECT_EQ(keys_of("ddr"), field_count<std::decay_t<decltype(ddr)>>());
   EXPECT_EQ(keys_of("on_chip_sram"), field_count<std::decay_t<decltype(on_chip_sram)>>());
+  EXPECT_EQ(keys_of("board"), field_count<std::decay_t<decltype(board)>>());
   EXPECT_EQ(keys_of("host"), field_count<std::decay_t<decltype(host)>>());
   EXPECT_EQ(keys_of("energy.picojoules"), cn::kInstructionClasses - 1) << "mono has no energy of its own";
   EXPECT_EQ(keys_of("energy"),
             field_count<std::decay_t<decltype(energy)>>() - 1 + keys_of("energy.picojoules"));
-  EXPECT_EQ(field_count<ChipConfig::Chip>(), 2U);
+  EXPECT_EQ(field_count<ChipConfig::Chip>(), 3U);
   EXPECT_EQ(field_count<ChipConfig::Pio>(), 9U);
+}
+
+TEST(ParameterTable, ABoardHasOneTwoOrFourChips) {
+  ChipConfig config = default_chip_config();
+  for (const int chips : {1, 2, 4}) {
+    set_parameter(config, "board.chips", std::to_string(chips), "--set");
+    EXPECT_EQ(config.board.chips, chips);
+  }
+  for (const char* chips : {"0", "3", "5", "-2", "8"})
+    EXPECT_EQ(set_error("board.chips", chips),
+              "--set: board.chips: found '" + std::string(chips) + "'; allowed: a power of two from 1 to 4");
 }
 
 TEST(ParameterTable, InstructionClassesKeepTheirNamesAndPlaces) {

@@ -13,7 +13,7 @@ TEST(Presets, AreTheFiveThatAreDocumented) {
             (std::vector<std::string>{"csx600", "csx600_250mhz", "csx700", "g80_like", "paper"}));
   EXPECT_TRUE(differences(preset("csx600"), default_chip_config()).empty());
   EXPECT_EQ(preset("csx600_250mhz").chip.clock_hz, 250e6);
-  EXPECT_EQ(preset("csx700").chip.pes, 192);
+  EXPECT_EQ(preset("csx700").chip.arrays * preset("csx700").chip.pes, 192);
   EXPECT_EQ(preset("csx700").ddr.size_bytes, std::uint64_t{2} << 30);
   EXPECT_EQ(preset("g80_like").chip.pes, 32);
   EXPECT_EQ(preset("paper").chip.pes, 96);

@@ -10,7 +10,8 @@ namespace test_support {
 inline model::ChipConfig test_chip(int pes = 8) {
   model::ChipConfig config{};
   config.preset = "test";
-  config.chip = {1e9, pes};
+  config.chip = {1e9, pes, 1};
+  config.board = {1, 8, 1e9, 20};
   config.poly.sram_bytes = 1024;
   config.poly.code_quality_factor = 1.0;
   config.poly.cycles.fill(1.0);

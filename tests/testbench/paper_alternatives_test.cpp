@@ -79,7 +79,7 @@ class PaperAlternatives : public testing::Test {
     note(a.chip.ddr.refresh_interval_cycles != b.chip.ddr.refresh_interval_cycles, "refresh");
     note(a.chip.pio.arbitration != b.chip.pio.arbitration, "arbitration");
     note(a.chip.control.transfer_call_cycles != b.chip.control.transfer_call_cycles, "call");
-    note(a.chips != b.chips, "chips");
+    note(a.chip.board.chips != b.chip.board.chips, "chips");
     note(a.fits_transfer_call != b.fits_transfer_call, "fit");
     note(a.scene.triangles.size() != b.scene.triangles.size(), "triangles");
     note(a.program.roulette_start != b.program.roulette_start, "roulette");

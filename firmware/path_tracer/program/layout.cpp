@@ -132,6 +132,18 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   return layout;
 }
 
+void place_bins(Layout& layout, cn::MonoAddress first) {
+  const std::uint64_t distance = first - layout.scene_bytes;
+  const auto move = [distance](auto&... bins) { ((bins.address += distance), ...); };
+  move(layout.ray_bin, layout.ray_queue, layout.traversal_bin, layout.treelet_pool, layout.intersection_bin,
+       layout.surface_place_bin, layout.scatter_bin, layout.lighting_bin, layout.direct_light_bin,
+       layout.path_bin, layout.binned_hits, layout.casts_bin, layout.vertices, layout.folds, layout.finished,
+       layout.results_header[0], layout.results_header[1], layout.results[0], layout.results[1]);
+  for (Layout::Region& region : layout.regions)
+    if (region.first >= layout.scene_bytes) region.first += distance;
+  layout.total_bytes += distance;
+}
+
 void add_camera_samples(Layout& layout, std::uint64_t count) {
   MonoAllocator memory(layout.regions, layout.total_bytes);
   layout.camera_samples = memory.take<CameraSampleRecord>("camera samples", count);

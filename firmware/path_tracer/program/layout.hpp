@@ -94,6 +94,10 @@ inline int hit_kinds(const Features& features) {
   return kFirstMaterialKind + features.shading_kinds;
 }
 
+/// Moves bins and results, which begin behind the scene, so that they begin at `first`: those of a second
+/// array that shares the memory and the scene. To be called before add_camera_samples().
+void place_bins(Layout& layout, cn::MonoAddress first);
+
 /// Adds room for a list of camera samples (Work).
 void add_camera_samples(Layout& layout, std::uint64_t count);
 

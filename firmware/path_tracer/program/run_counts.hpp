@@ -13,12 +13,17 @@ class PassCounts {
   static constexpr std::size_t kMaxIntervals = 64;
 
   void add(std::uint64_t count);
+  /// Adds the counts of another run: those of its first pass to those of the first pass here, and so on.
+  void merge(PassCounts other);
 
   std::uint64_t passes() const { return passes_; }
   std::uint64_t passes_per_interval() const { return passes_per_interval_; }
   const std::vector<std::uint64_t>& intervals() const { return intervals_; }
 
  private:
+  /// Two intervals become one.
+  void coarsen();
+
   std::uint64_t passes_ = 0;
   std::uint64_t passes_per_interval_ = 1;
   std::vector<std::uint64_t> intervals_;
@@ -34,6 +39,8 @@ struct TraversalCounts {
   /// Counts until 95 % of the rays in the ray queue were finished:
   std::uint64_t rays_before_tail = 0;
   std::uint64_t lanes_before_tail = 0;
+
+  void merge(const TraversalCounts& other);
 };
 
 /// Counts of the firmware; the chip has its own.
@@ -49,6 +56,9 @@ struct RunCounts {
   std::vector<std::uint64_t> paths_by_segments;  ///< [s]: paths that ended with s segments
   PassCounts rays;                               ///< segments and shadow rays by pass
   TraversalCounts traversal;
+
+  /// Adds the counts of a run beside this one, on another array or chip.
+  void merge(const RunCounts& other);
 };
 
 }  // namespace path_tracer

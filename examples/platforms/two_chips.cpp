@@ -7,9 +7,9 @@
 #include <exception>
 #include <string>
 
-#include "examples/two_chips/shared_memory.hpp"
 #include "model/config/chip_presets.hpp"
 #include "model/csx600.hpp"
+#include "shared_memory.hpp"
 
 namespace {
 

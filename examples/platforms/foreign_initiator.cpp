@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "examples/two_chips/shared_memory.hpp"
 #include "model/config/chip_presets.hpp"
 #include "model/csx600.hpp"
+#include "shared_memory.hpp"
 
 namespace {
 

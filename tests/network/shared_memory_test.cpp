@@ -1,6 +1,6 @@
-// Two chips on one memory: they contend for it in the order of time, loosely as approximately timed.
+// Several chips on one memory: they contend for it in the order of time, loosely as approximately timed.
 
-#include "examples/two_chips/shared_memory.hpp"
+#include "examples/platforms/shared_memory.hpp"
 
 #include <cmath>
 #include <memory>
@@ -111,6 +111,22 @@ void SharedMemory::expect_fair_sharing(double bytes_per_second, double bound) {
 TEST_F(SharedMemory, EqualChipsShareItEqually) {
   expect_fair_sharing(kSlow, 0.02);
   expect_fair_sharing(kMedium, 0.02);
+}
+
+/// Each of three, and of four, takes what the memory takes for all of them.
+TEST_F(SharedMemory, ThreeAndFourShareItEqually) {
+  for (const std::size_t chips : {std::size_t(3), std::size_t(4)}) {
+    const std::vector<double> starts(chips, 0);
+    const Outcome loose = run(TimingStyle::loosely_timed, kSlow, starts);
+    const Outcome approximate = run(TimingStyle::approximately_timed, kSlow, starts);
+    EXPECT_GT(loose.memory_busy, 0.97);
+    EXPECT_GT(approximate.memory_busy, 0.97);
+    for (std::size_t chip = 0; chip < chips; ++chip) {
+      EXPECT_LT(difference(loose.cycles[chip], loose.cycles[0]), 0.01) << chips;
+      EXPECT_LT(difference(approximate.cycles[chip], approximate.cycles[0]), 0.01) << chips;
+      EXPECT_LT(difference(loose.cycles[chip], approximate.cycles[chip]), 0.02) << chips;
+    }
+  }
 }
 
 TEST_F(SharedMemory, AFastOneHoldsUpNobody) {

@@ -67,9 +67,7 @@ void NativeMachine::start_transfer(const cn::Transfer& transfer) {
 /// Whether all places lie in `range`; the data have moved then.
 bool NativeMachine::move_within(const cn::Transfer& transfer, const cn::MonoRange& range,
                                 std::uint8_t* bytes) {
-  const auto wanted = std::uint64_t(transfer.poly.size_bytes);
-  const auto contains = [&](cn::MonoAddress place) { return range.contains(place, wanted); };
-  if (cn::first_pe_not(transfer, num_pes(), contains) >= 0) return false;
+  if (!cn::lies_within(transfer, num_pes(), range)) return false;
   cn::Transfer from_start = transfer;
   from_start.mono.first -= range.first;
   cn::move_data(from_start, poly_memory(), bytes);

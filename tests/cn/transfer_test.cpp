@@ -93,4 +93,38 @@ TEST_F(CnTransfer, OfPesThatSaveToTheSameWordTheHighestIsKept) {
     }
 }
 
+/// A check of all PEs at a time against one of each PE.
+void expect_within_as_pe_by_pe(const cn::Transfer& transfer, const cn::MonoRange& range) {
+  bool all = true;
+  for (int pe = 0; pe < kPes; ++pe)
+    if (transfer.enabled[pe])
+      all = all && range.contains(transfer.mono[pe], std::uint64_t(transfer.poly.size_bytes));
+  EXPECT_EQ(lies_within(transfer, kPes, range), all) << range.first << " + " << range.bytes;
+}
+
+TEST(LiesWithin, HoldsIfEachEnabledPesPlaceDoes) {
+  std::mt19937_64 random(5);
+  const std::vector<cn::MonoRange> ranges{{0, 0}, {0, 4096}, {512, 4096}, {0, 16}, {1 << 20, 1 << 12}};
+  const auto any_place = [&]() -> MonoAddress {
+    if (random() % 64 == 0) return kNowhere - random() % 4096 / 8 * 8;
+    return (random() % 16 == 0 ? 1 << 20 : 0) + random() % 5120 / 8 * 8;
+  };
+  int within = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<MonoAddress> places(kPes);
+    const MonoAddress middle = any_place();
+    for (MonoAddress& place : places) place = random() % 2 == 0 ? any_place() : middle;
+    cn::Transfer transfer;
+    transfer.poly = {0, int(random() % 9) * 8};
+    transfer.mono = random() % 2 == 0 ? MonoPlaces::each(places.data(), random() % 2 * 64)
+                                      : MonoPlaces::array(any_place(), random() % 64 * 8);
+    for (int pe = 0; pe < kPes; ++pe) transfer.enabled.set(pe, random() % 8 == 0);
+    for (const cn::MonoRange& range : ranges) {
+      expect_within_as_pe_by_pe(transfer, range);
+      within += lies_within(transfer, kPes, range);
+    }
+  }
+  EXPECT_GT(within, 2000);
+}
+
 }  // namespace transfer_test

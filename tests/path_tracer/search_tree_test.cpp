@@ -10,6 +10,7 @@
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/search_meshes.hpp"
+#include "tests/support/test_rays.hpp"
 #include "tests/support/tree_search.hpp"
 
 namespace search_tree_test {
@@ -18,10 +19,18 @@ using path_tracer::RayRecord;
 using path_tracer::SearchNode;
 using path_tracer::SearchTree;
 using test_support::RaySearch;
+using test_support::SearchHit;
 using test_support::SearchScene;
+using test_support::TestRays;
 
-SearchTree tree_of(const SearchScene& scene) {
-  return path_tracer::make_search_tree(scene.records(), scene.triangle_count, scene.reach, scene.layers);
+/// @param lights whose faces end searches early
+SearchTree tree_of(const SearchScene& scene, const std::vector<path_tracer::LightRecord>& lights = {}) {
+  return path_tracer::make_search_tree(scene.records(), scene.triangle_count, scene.reach, scene.layers,
+                                       lights.data(), int(lights.size()));
+}
+
+SearchScene searched_scene(const testbench::Scene& scene) {
+  return test_support::search_scene(scene, {{path_tracer::NodeFormat::fp32, 4}, 1, 1, 2, 0, 0});
 }
 
 class SearchTreeHits : public testing::TestWithParam<std::tuple<test_support::NamedMesh, cn::Level>> {};
@@ -29,13 +38,68 @@ class SearchTreeHits : public testing::TestWithParam<std::tuple<test_support::Na
 TEST_P(SearchTreeHits, AreThoseOfATestOfEveryTriangle) {
   const auto& [mesh, level] = GetParam();
   const testbench::Scene scene = test_support::scene_of(mesh.make());
-  const SearchScene searched =
-      test_support::search_scene(scene, {{path_tracer::NodeFormat::fp32, 4}, 1, 1, 2, 0, 0});
+  const SearchScene searched = searched_scene(scene);
   const SearchTree tree = tree_of(searched);
   RaySearch search(level);
   expect_hits_of_brute_force(scene, searched, search, 37, [&](const std::vector<RayRecord>& rays) {
     return search.brute_force(searched, rays, nullptr, &tree);
   });
+}
+
+/// The faces of a scene's lights are all that a search tree reads of them.
+std::vector<path_tracer::LightRecord> light_faces(const std::vector<std::vector<std::size_t>>& lights,
+                                                  const TestRays& source) {
+  std::vector<path_tracer::LightRecord> records;
+  for (const std::vector<std::size_t>& light : lights) {
+    records.emplace_back();
+    records.back().face = source.face(std::int32_t(light[0]));
+  }
+  return records;
+}
+
+/// A shadow ray may end at anything that hides its light. So only whether it sees the light must be the same,
+/// and what it hits there.
+void expect_the_same_lights_seen(const testbench::Scene& scene, cn::Level level) {
+  const std::vector<std::vector<std::size_t>> lights = test_support::lights_of(scene);
+  TestRays source(scene, 41);
+  const SearchScene searched = searched_scene(scene);
+  const SearchTree tree = tree_of(searched, light_faces(lights, source));
+  ASSERT_FALSE(tree.light_leaf.empty());
+  RaySearch search(level);
+  int seen = 0;
+  int hidden = 0;
+  for (int batch = 0; batch < 200; ++batch) {
+    std::vector<RayRecord> rays;
+    for (std::size_t i = 0; i < std::size_t(RaySearch::kPes); ++i)
+      rays.push_back(i % 9 == 0 ? source.ray(6) : source.shadow_ray(lights[i % lights.size()]));
+    const std::vector<SearchHit> expected = search.brute_force(searched, rays);
+    const std::vector<SearchHit> found = search.brute_force(searched, rays, nullptr, &tree);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const bool is_segment = rays[i].light_face == path_tracer::kNoFace;
+      const auto sees = [&](const SearchHit& hit) {
+        return sees_light(searched, source, hit, rays[i].light_face, std::int32_t(i % lights.size()));
+      };
+      ASSERT_EQ(sees(found[i]), sees(expected[i])) << "batch " << batch << ", ray " << i;
+      if (is_segment || sees(found[i])) {
+        ASSERT_TRUE(same(found[i], expected[i])) << "batch " << batch << ", ray " << i;
+      }
+      seen += !is_segment && sees(found[i]);
+      hidden += !is_segment && !sees(found[i]);
+    }
+  }
+  EXPECT_GT(seen, 100);
+  EXPECT_GT(hidden, 100);
+}
+
+TEST_P(SearchTreeHits, SeeTheLightsThatATestOfEveryTriangleSees) {
+  const auto& [mesh, level] = GetParam();
+  expect_the_same_lights_seen(test_support::scene_of(mesh.make()), level);
+}
+
+/// By rounding, a decal may lie between the hits of two triangles of a light that share an edge.
+TEST(SearchTree, SeesLightsThatShareEdgesUnderADecal) {
+  for (const cn::Level level : cn::usable_levels())
+    expect_the_same_lights_seen(test_support::scene_of(test_support::decals()), level);
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SearchTreeHits,
@@ -46,28 +110,33 @@ INSTANTIATE_TEST_SUITE_P(Meshes, SearchTreeHits,
                                   std::to_string(2 + int(std::get<1>(suite.param)));
                          });
 
-/// Every triangle is in one leaf, and every way from the root ends within the walk's stack.
+bool exists(const SearchNode& node, int child) {
+  return node.plane[0][0][child] <= node.plane[1][0][child];
+}
+
+/// Every triangle is in one leaf or among the large ones, and every way from the root ends within the walk's
+/// stack.
 int levels_below(const SearchTree& tree, std::uint32_t node, std::multiset<std::int32_t>& triangles) {
   int deepest = 0;
   for (int i = 0; i < SearchNode::kChildren; ++i) {
-    if ((tree.nodes[node].present >> i & 1u) == 0) continue;
+    if (!exists(tree.nodes[node], i)) continue;
     const std::uint32_t child = tree.nodes[node].child[i];
     if (child < SearchTree::kFirstLeaf) {
       deepest = std::max(deepest, levels_below(tree, child, triangles));
       continue;
     }
     const path_tracer::SearchLeaf& leaf = tree.leaves[child - SearchTree::kFirstLeaf];
-    for (int k = 0; k < leaf.count; ++k) triangles.insert(tree.order[std::size_t(leaf.first + k)]);
+    triangles.insert(leaf.index, leaf.index + leaf.count);
   }
   return 1 + deepest;
 }
 
 TEST(SearchTreeShape, HoldsEachTriangleOnceWithinItsLevels) {
   for (const test_support::NamedMesh& mesh : test_support::search_meshes()) {
-    const SearchScene searched = test_support::search_scene(
-        test_support::scene_of(mesh.make()), {{path_tracer::NodeFormat::fp32, 4}, 1, 1, 2, 0, 0});
+    const SearchScene searched = searched_scene(test_support::scene_of(mesh.make()));
     const SearchTree tree = tree_of(searched);
     std::multiset<std::int32_t> triangles;
+    for (const path_tracer::LargeTriangle& large : tree.large) triangles.insert(large.index);
     EXPECT_LE(levels_below(tree, 0, triangles), SearchTree::kMostLevels) << mesh.name;
     ASSERT_EQ(int(triangles.size()), searched.triangle_count) << mesh.name;
     EXPECT_EQ(int(std::set<std::int32_t>(triangles.begin(), triangles.end()).size()), searched.triangle_count)

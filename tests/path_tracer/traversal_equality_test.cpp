@@ -23,14 +23,6 @@ using test_support::SearchScene;
 using test_support::TestRays;
 using testbench::Scene;
 
-/// Returns the triangles of each light. The scene's lights are in the order of its triangles.
-std::vector<std::vector<std::size_t>> lights_of(const Scene& scene) {
-  std::vector<std::vector<std::size_t>> lights;
-  for (std::size_t i = 0; i < scene.triangles.size(); ++i)
-    if (scene.triangles[i].material == 1) lights.push_back({i});
-  return lights;
-}
-
 /// All formats, sizes of leaves and treelets, and numbers of resident nodes; each is tried with several
 /// stacks.
 std::vector<TreeShape> shapes() {
@@ -94,7 +86,7 @@ TEST_P(TraversalEquality, EveryRayHitsWhatBruteForceHits) {
 /// A shadow ray need not tell what is in its way. Whether something is must be the same, and so must the hit
 /// on the light.
 void expect_the_same_lights_seen(const Scene& scene, RaySearch& search) {
-  const std::vector<std::vector<std::size_t>> lights = lights_of(scene);
+  const std::vector<std::vector<std::size_t>> lights = test_support::lights_of(scene);
   TestRays source(scene, 29);
   int lit = 0;
   for (const TreeShape& shape : shapes()) {
@@ -109,8 +101,7 @@ void expect_the_same_lights_seen(const Scene& scene, RaySearch& search) {
     }
     const std::vector<SearchHit> expected = search.brute_force(searched, rays);
     const auto sees = [&](const SearchHit& hit, std::size_t i) {
-      if (hit.number < 0 || source.face(hit.number) != rays[i].light_face) return false;
-      return !searched.layers.any || searched.light_of[std::size_t(hit.number)] == queued[i].light;
+      return sees_light(searched, source, hit, rays[i].light_face, queued[i].light);
     };
     for (const int stack : {0, 2, 8}) {
       searched.shape.stack_entries = stack;

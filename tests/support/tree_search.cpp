@@ -111,6 +111,19 @@ bool same(const SearchHit& a, const SearchHit& b) {
   return a.number == b.number && std::memcmp(&a.record, &b.record, sizeof(HitRecord)) == 0;
 }
 
+std::vector<std::vector<std::size_t>> lights_of(const testbench::Scene& scene) {
+  std::vector<std::vector<std::size_t>> lights;
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i)
+    if (scene.triangles[i].material == 1) lights.push_back({i});
+  return lights;
+}
+
+bool sees_light(const SearchScene& scene, const TestRays& source, const SearchHit& hit,
+                std::int32_t light_face, std::int32_t light) {
+  if (hit.number < 0 || source.face(hit.number) != light_face) return false;
+  return !scene.layers.any || scene.light_of[std::size_t(hit.number)] == light;
+}
+
 RaySearch::RaySearch(cn::Level level) : kernels_(path_tracer::kernels(level)), memory_(kPes, kPolyBytes) {}
 
 /// Overwrites SRAM, so that no kernel can depend on data left from earlier.
@@ -162,7 +175,8 @@ std::vector<SearchHit> RaySearch::brute_force(const SearchScene& scene, const st
   arguments.hit = PolyPointer<HitRecord>(at.hit);
   arguments.surface_place = {at.surface_place};
   arguments.hit_something = &hit_something;
-  kernels_.intersect.run(arguments, memory_, LaneMask::first(count), issued_);
+  const auto& intersect = tree == nullptr ? kernels_.intersect : kernels_.intersect_through_tree;
+  intersect.run(arguments, memory_, LaneMask::first(count), issued_);
   std::vector<SearchHit> hits;
   for (int pe = 0; pe < count; ++pe) hits.push_back(hit_of(pe, at));
   return hits;

@@ -40,6 +40,15 @@ struct SearchHit {
 /// Whether two hits are equal to the last bit.
 bool same(const SearchHit& a, const SearchHit& b);
 
+class TestRays;
+
+/// The triangles of each light of scene_of(), in the order of its lights.
+std::vector<std::vector<std::size_t>> lights_of(const testbench::Scene& scene);
+
+/// Whether a shadow ray towards a light that hit this sees it.
+bool sees_light(const SearchScene& scene, const TestRays& source, const SearchHit& hit,
+                std::int32_t light_face, std::int32_t light);
+
 class RaySearch {
  public:
   static constexpr int kPes = 64;

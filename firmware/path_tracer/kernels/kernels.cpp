@@ -4,13 +4,13 @@
 
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/kernels/coverage.hpp"
+#include "firmware/path_tracer/kernels/intersection.hpp"
 #include "firmware/path_tracer/kernels/light_candidates.hpp"
 #include "firmware/path_tracer/kernels/outside.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/shade.hpp"
 #include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/prefilter/prefilter_search.hpp"
-#include "firmware/path_tracer/prefilter/tree_walk.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
 #include "firmware/path_tracer/sampling/sampler.hpp"
 
@@ -19,6 +19,7 @@ namespace path_tracer {
 inline namespace CN_LEVEL {
 const TraversalKernels& traversal_kernel_table();
 const PacketKernels& packet_kernel_table();
+cn::Kernel<IntersectArguments> tree_search_kernel();
 }  // namespace CN_LEVEL
 
 namespace {
@@ -28,20 +29,11 @@ mask kept_mask(const LaneMask& lanes) {
 }
 
 void intersect(const IntersectArguments& arguments) {
-  RayOperands ray{arguments.ray.get(&RayRecord::origin), arguments.ray.get(&RayRecord::direction),
-                  arguments.ray.get(&RayRecord::left_face)};
-  ray.measure_from_anchor(arguments.layers);
+  const RayOperands ray = rays_to_intersect(arguments);
   Nearest nearest;
-  const MonoTriangles triangles{arguments.triangles, arguments.triangle_count,
-                                arguments.layers.record_bytes()};
-  if (arguments.tree != nullptr) {
-    search_tree(ray, arguments.reach, triangles, *arguments.tree, nearest);
-  } else {
-    search_by(PrefilteredSearch{arguments.prefilter}, ray, arguments.reach, triangles, nearest);
-  }
-  write_hit(nearest, ray.origin, ray.direction, arguments.hit, arguments.hit_has_tail);
-  arguments.surface_place.write(place_of(arguments.surfaces, nearest.number));
-  cn::keep(nearest.number >= 0, *arguments.hit_something);
+  search_by(PrefilteredSearch{arguments.prefilter}, ray, arguments.reach, triangles_to_intersect(arguments),
+            nearest);
+  write_found(arguments, ray, nearest);
 }
 
 struct Surface {
@@ -380,8 +372,9 @@ void fold(const FoldArguments& arguments) {
 inline namespace CN_LEVEL {
 
 const Kernels& kernel_table() {
-  static constexpr Kernels table{
+  static const Kernels table{
       cn::kernel<IntersectArguments, intersect>("intersect"),
+      tree_search_kernel(),
       cn::kernel<ScatterArguments, scatter>("scatter"),
       cn::kernel<LookUpArguments, look_up>("look_up"),
       cn::kernel<EnvironmentLookUpArguments, look_up_environment>("look_up_environment"),

@@ -20,7 +20,7 @@ struct IntersectArguments {
   const TriangleRecord* triangles = nullptr;
   int triangle_count = 0;
   const Prefilter* prefilter = nullptr;  ///< the simulator's, of those triangles; nullptr to test each
-  const SearchTree* tree = nullptr;      ///< the simulator's, where nothing is charged
+  const SearchTree* tree = nullptr;      ///< the simulator's; of intersect_through_tree only
   double reach = 0;                      ///< of the scene (triangle_record.hpp)
   Layers layers;
   MonoRecords surfaces;
@@ -250,6 +250,7 @@ struct PacketKernels;
 
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
+  cn::Kernel<IntersectArguments> intersect_through_tree;  ///< the simulator's, where nothing is charged
   cn::Kernel<ScatterArguments> scatter;
   cn::Kernel<LookUpArguments> look_up;
   cn::Kernel<EnvironmentLookUpArguments> look_up_environment;

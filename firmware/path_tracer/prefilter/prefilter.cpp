@@ -17,16 +17,25 @@ std::array<float, 3> narrow(const vec3<double>& v, int exponent) {
           float(std::ldexp(v.z, exponent))};
 }
 
-/// @param back edge2 x edge1, scaled as the edges
-PrefilterTriangle prefilter_triangle(const TriangleRecord& triangle, const vec3<double>& back,
-                                     const vec3<double>& anchor, int unit_exponent) {
+int edge_exponent(const TriangleRecord& triangle) {
   const double largest = std::max(largest_component(triangle.edge1), largest_component(triangle.edge2));
-  const int edge_exponent = largest > 0 ? -std::ilogb(largest) - 1 : 0;
-  return {narrow(triangle.vertex - anchor, unit_exponent), narrow(triangle.edge1 * -1.0, edge_exponent),
-          narrow(triangle.edge2, edge_exponent), narrow(back, edge_exponent + unit_exponent), triangle.face};
+  return largest > 0 ? -std::ilogb(largest) - 1 : 0;
 }
 
 }  // namespace
+
+PrefilterTriangle prefilter_triangle(const TriangleRecord& triangle, const Layers& layers,
+                                     const vec3<double>& anchor, double unit) {
+  const vec3<double> back = layers.any ? triangle.back * layered(triangle).area_ratio : triangle.back;
+  const int of_edges = edge_exponent(triangle);
+  const int of_coordinates = std::ilogb(unit);
+  return {narrow(triangle.vertex - anchor, of_coordinates), narrow(triangle.edge1 * -1.0, of_edges),
+          narrow(triangle.edge2, of_edges), narrow(back, of_edges + of_coordinates), triangle.face};
+}
+
+double prefilter_scale(const TriangleRecord& triangle, double unit) {
+  return std::ldexp(unit, edge_exponent(triangle));
+}
 
 Prefilter make_prefilter(const TriangleRecord* first, int count, double reach, const Layers& layers) {
   Prefilter prefilter;
@@ -36,9 +45,7 @@ Prefilter make_prefilter(const TriangleRecord* first, int count, double reach, c
   prefilter.triangles.reserve(std::size_t(count));
   for (int i = 0; i < count; ++i) {
     const TriangleRecord& triangle = triangle_at(first, i, layers.record_bytes());
-    const vec3<double> back = layers.any ? triangle.back * layered(triangle).area_ratio : triangle.back;
-    prefilter.triangles.push_back(
-        prefilter_triangle(triangle, back, prefilter.anchor, std::ilogb(prefilter.unit)));
+    prefilter.triangles.push_back(prefilter_triangle(triangle, layers, prefilter.anchor, prefilter.unit));
   }
   return prefilter;
 }

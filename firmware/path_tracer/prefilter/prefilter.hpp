@@ -29,6 +29,13 @@ struct Prefilter {
   std::vector<PrefilterTriangle> triangles;
 };
 
+/// @param anchor, unit those of Prefilter
+PrefilterTriangle prefilter_triangle(const TriangleRecord& triangle, const Layers& layers,
+                                     const vec3<double>& anchor, double unit);
+
+/// Returns the power of two by which a PrefilterTriangle's determinants exceed those of the record.
+double prefilter_scale(const TriangleRecord& triangle, double unit);
+
 /// @param reach no ray starts farther from a vertex, and no vertex is farther from another
 Prefilter make_prefilter(const TriangleRecord* first, int count, double reach, const Layers& layers = {});
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <numeric>
+#include <map>
+#include <utility>
 
 #include "firmware/path_tracer/geometry/triangle_record.hpp"
+#include "firmware/path_tracer/prefilter/prefilter.hpp"
 #include "firmware/path_tracer/records/node_layout.hpp"
 
 namespace path_tracer {
@@ -58,7 +61,64 @@ FloatBox box_of(const TriangleRecord& triangle, double reach, bool is_layered, c
   return {{below(lower.x), below(lower.y), below(lower.z)}, {above(upper.x), above(upper.y), above(upper.z)}};
 }
 
-/// Consecutive triangles of SearchTree::order.
+/// A node whose boxes no ray meets: the sides are the wrong way round.
+SearchNode childless_node() {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  SearchNode node{};
+  for (auto& lower : node.plane[0]) std::fill(std::begin(lower), std::end(lower), kInfinite);
+  for (auto& upper : node.plane[1]) std::fill(std::begin(upper), std::end(upper), -kInfinite);
+  return node;
+}
+
+/// Makes leaves, and large triangles, of a scene's triangles.
+class LeafMaker {
+ public:
+  LeafMaker(const SearchTree& tree, const TriangleRecord* first, const Layers& layers)
+      : tree_(tree), first_(first), layers_(layers) {}
+
+  /// @param count at most SearchLeaf::kTriangles
+  SearchLeaf leaf(const std::int32_t* indices, int count) const {
+    SearchLeaf leaf{};
+    leaf.count = count;
+    for (int i = 0; i < count; ++i) put(leaf, i, indices[i]);
+    return leaf;
+  }
+
+  LargeTriangle large(std::int32_t index) const {
+    const TriangleRecord& record = record_of(index);
+    return {prefilter_triangle(record, layers_, tree_.anchor, tree_.unit), certain_determinant(record),
+            index};
+  }
+
+ private:
+  void put(SearchLeaf& leaf, int place, std::int32_t index) const {
+    const TriangleRecord& record = record_of(index);
+    const PrefilterTriangle triangle = prefilter_triangle(record, layers_, tree_.anchor, tree_.unit);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      leaf.vertex[axis][place] = triangle.vertex[axis];
+      leaf.minus_edge1[axis][place] = triangle.minus_edge1[axis];
+      leaf.edge2[axis][place] = triangle.edge2[axis];
+      leaf.back[axis][place] = triangle.back[axis];
+    }
+    leaf.certain_determinant[place] = certain_determinant(record);
+    leaf.face[place] = triangle.face;
+    leaf.index[place] = index;
+  }
+
+  /// In a layered scene distances come from planes that triangles share, so no crossing is called certain.
+  float certain_determinant(const TriangleRecord& record) const {
+    return layers_.any ? std::numeric_limits<float>::infinity() : float(prefilter_scale(record, tree_.unit));
+  }
+  const TriangleRecord& record_of(std::int32_t index) const {
+    return triangle_at(first_, index, layers_.record_bytes());
+  }
+
+  const SearchTree& tree_;
+  const TriangleRecord* first_;
+  const Layers& layers_;
+};
+
+/// Consecutive triangles in the order of leaves.
 struct Range {
   int first;
   int count;
@@ -69,17 +129,18 @@ struct Range {
 /// Volume Hierarchies", RT 2007).
 class TreeBuilder {
  public:
-  TreeBuilder(SearchTree& tree, const std::vector<FloatBox>& boxes) : tree_(tree), boxes_(boxes) {}
+  TreeBuilder(SearchTree& tree, const std::vector<FloatBox>& boxes, const LeafMaker& leaves)
+      : tree_(tree), boxes_(boxes), leaves_(leaves) {}
 
-  void build() {
-    tree_.order.resize(boxes_.size());
-    std::iota(tree_.order.begin(), tree_.order.end(), 0);
-    tree_.nodes.emplace_back();
-    fill_node(0, range(0, static_cast<int>(boxes_.size())), 1);
+  /// @param triangles indices of those that the tree is of
+  void build(std::vector<std::int32_t> triangles) {
+    order_ = std::move(triangles);
+    add_node();
+    if (!order_.empty()) fill_node(0, range(0, static_cast<int>(order_.size())), 1);
   }
 
  private:
-  const FloatBox& box(int place) const { return boxes_[std::size_t(tree_.order[std::size_t(place)])]; }
+  const FloatBox& box(int place) const { return boxes_[std::size_t(order_[std::size_t(place)])]; }
 
   Range range(int first, int count) const {
     Range result{first, count, FloatBox::nothing()};
@@ -93,11 +154,11 @@ class TreeBuilder {
     const bool is_deep = level > SearchTree::kMostLevels / 2;
     while (children.size() < SearchNode::kChildren) {
       const auto cost = [](const Range& of) {
-        return of.count > SearchTree::kMostInLeaf ? of.box.half_area() * of.count + 1e-30 * of.count : -1.0;
+        return of.count > SearchLeaf::kTriangles ? of.box.half_area() * of.count + 1e-30 * of.count : -1.0;
       };
       const auto widest = std::max_element(children.begin(), children.end(),
                                            [&](const Range& a, const Range& b) { return cost(a) < cost(b); });
-      if (widest->count <= SearchTree::kMostInLeaf) break;
+      if (widest->count <= SearchLeaf::kTriangles) break;
       const Range whole = *widest;
       const int left = is_deep ? split_in_middle(whole) : split_by_area(whole);
       *widest = range(whole.first, left);
@@ -106,21 +167,24 @@ class TreeBuilder {
     for (std::size_t i = 0; i < children.size(); ++i) put_child(number, i, children[i], level);
   }
 
+  std::size_t add_node() {
+    tree_.nodes.push_back(childless_node());
+    return tree_.nodes.size() - 1;
+  }
+
   void put_child(std::size_t number, std::size_t place, const Range& child, int level) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      tree_.nodes[number].lower[axis][place] = child.box.lower[axis];
-      tree_.nodes[number].upper[axis][place] = child.box.upper[axis];
+      tree_.nodes[number].plane[0][axis][place] = child.box.lower[axis];
+      tree_.nodes[number].plane[1][axis][place] = child.box.upper[axis];
     }
-    tree_.nodes[number].present |= 1u << place;
-    if (child.count <= SearchTree::kMostInLeaf) {
-      tree_.nodes[number].child[place] =
-          SearchTree::kFirstLeaf + static_cast<std::uint32_t>(tree_.leaves.size());
-      tree_.leaves.push_back({child.first, child.count});
+    if (child.count <= SearchLeaf::kTriangles) {
+      const std::uint32_t leaf = SearchTree::kFirstLeaf + static_cast<std::uint32_t>(tree_.leaves.size());
+      tree_.nodes[number].child[place] = leaf;
+      tree_.leaves.push_back(leaves_.leaf(order_.data() + child.first, child.count));
       return;
     }
-    const std::size_t next = tree_.nodes.size();
+    const std::size_t next = add_node();
     tree_.nodes[number].child[place] = static_cast<std::uint32_t>(next);
-    tree_.nodes.emplace_back();
     fill_node(next, child, level + 1);
   }
 
@@ -146,7 +210,7 @@ class TreeBuilder {
     float low = 0;
     float high = 0;
     const std::size_t axis = widest_axis(whole, low, high);
-    const auto begin = tree_.order.begin() + whole.first;
+    const auto begin = order_.begin() + whole.first;
     std::nth_element(begin, begin + whole.count / 2, begin + whole.count, [&](int a, int b) {
       const float centre_a = boxes_[std::size_t(a)].centre(axis);
       const float centre_b = boxes_[std::size_t(b)].centre(axis);
@@ -170,7 +234,7 @@ class TreeBuilder {
     bins.fill(FloatBox::nothing());
     std::array<int, kBins> counts{};
     for (int i = 0; i < whole.count; ++i) {
-      const auto bin = std::size_t(bin_of(tree_.order[std::size_t(whole.first + i)]));
+      const auto bin = std::size_t(bin_of(order_[std::size_t(whole.first + i)]));
       bins[bin].include(box(whole.first + i));
       ++counts[bin];
     }
@@ -197,7 +261,7 @@ class TreeBuilder {
       }
     }
     if (best < 0) return split_in_middle(whole);
-    const auto begin = tree_.order.begin() + whole.first;
+    const auto begin = order_.begin() + whole.first;
     const auto middle =
         std::partition(begin, begin + whole.count, [&](int triangle) { return bin_of(triangle) <= best; });
     return static_cast<int>(middle - begin);
@@ -205,20 +269,67 @@ class TreeBuilder {
 
   SearchTree& tree_;
   const std::vector<FloatBox>& boxes_;
+  const LeafMaker& leaves_;
+  std::vector<std::int32_t> order_;
 };
+
+/// Takes the largest triangles out, if most rays meet their boxes. Returns the indices of the others.
+std::vector<std::int32_t> take_large(SearchTree& tree, const LeafMaker& leaves,
+                                     const std::vector<FloatBox>& boxes) {
+  constexpr double kLargePart = 1.0 / 20;  // of the area of a box around all
+  FloatBox all = FloatBox::nothing();
+  for (const FloatBox& box : boxes) all.include(box);
+  std::vector<std::int32_t> large;
+  std::vector<std::int32_t> others;
+  const auto area = [&](std::int32_t i) { return boxes[std::size_t(i)].half_area(); };
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(boxes.size()); ++i)
+    (area(i) >= kLargePart * all.half_area() ? large : others).push_back(i);
+  std::stable_sort(large.begin(), large.end(), [&](auto a, auto b) { return area(a) > area(b); });
+  const std::size_t kept = std::min(large.size(), std::size_t{SearchTree::kMostLarge});
+  others.insert(others.end(), large.begin() + std::ptrdiff_t(kept), large.end());
+  large.resize(kept);
+  for (const std::int32_t index : large) tree.large.push_back(leaves.large(index));
+  return others;
+}
+
+/// Writes a leaf for the face of each light, beside those of the tree.
+void add_light_leaves(SearchTree& tree, const LeafMaker& leaves, const std::vector<std::int32_t>& faces,
+                      const LightRecord* lights, int light_count) {
+  std::map<std::int32_t, std::vector<std::int32_t>> of_face;
+  for (int i = 0; i < light_count; ++i)
+    if (lights[i].face >= 0) of_face[lights[i].face];
+  if (of_face.empty()) return;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (const auto found = of_face.find(faces[i]); found != of_face.end())
+      found->second.push_back(static_cast<std::int32_t>(i));
+  tree.light_leaf.resize(std::size_t(of_face.rbegin()->first) + 1, SearchTree::kNoLeaf);
+  for (const auto& [face, triangles] : of_face) {
+    if (triangles.size() > SearchLeaf::kTriangles) continue;
+    tree.light_leaf[std::size_t(face)] = static_cast<std::int32_t>(tree.leaves.size());
+    tree.leaves.push_back(leaves.leaf(triangles.data(), static_cast<int>(triangles.size())));
+  }
+}
 
 }  // namespace
 
-SearchTree make_search_tree(const TriangleRecord* first, int count, double reach, const Layers& layers) {
+SearchTree make_search_tree(const TriangleRecord* first, int count, double reach, const Layers& layers,
+                            const LightRecord* lights, int light_count) {
   SearchTree tree;
   if (count == 0) return tree;
   tree.anchor = first->vertex;
   tree.unit = to_node_unit(NodeFormat::fp32, reach);
   std::vector<FloatBox> boxes;
+  std::vector<std::int32_t> faces;
   boxes.reserve(std::size_t(count));
-  for (int i = 0; i < count; ++i)
-    boxes.push_back(box_of(triangle_at(first, i, layers.record_bytes()), reach, layers.any, tree));
-  TreeBuilder(tree, boxes).build();
+  faces.reserve(std::size_t(count));
+  for (int i = 0; i < count; ++i) {
+    const TriangleRecord& triangle = triangle_at(first, i, layers.record_bytes());
+    boxes.push_back(box_of(triangle, reach, layers.any, tree));
+    faces.push_back(triangle.face);
+  }
+  const LeafMaker leaves(tree, first, layers);
+  TreeBuilder(tree, boxes, leaves).build(take_large(tree, leaves, boxes));
+  add_light_leaves(tree, leaves, faces, lights, light_count);
   return tree;
 }
 

@@ -1,148 +1,71 @@
 #pragma once
 
-#include "firmware/path_tracer/geometry/triangle.hpp"
 #include "firmware/path_tracer/prefilter/prefilter_search.hpp"
-#include "firmware/path_tracer/prefilter/search_tree.hpp"
+#include "firmware/path_tracer/prefilter/ray_walk.hpp"
 
-/// Brute force as a machine without a clock executes it: each lane walks through the simulator's tree, and
-/// all lanes test one triangle each at a time.
-///
-/// No box is missed. With u = 2^-24: origins are below 2 units and have an error of 2 u, which the boxes
-/// include. Differences of a plane and an origin are off by u of their own, inverse directions by 2 u, and
-/// their product by 1 u more; entries and exits are moved apart by 8 u of their own.
+/// Brute force as a machine without a clock executes it: all lanes are tested with the scene's large
+/// triangles, each lane walks through the simulator's tree of the others, and the firmware's test of what may
+/// be crossed takes one triangle for each lane at a time.
 namespace path_tracer {
 
-/// A lane's way through the tree.
-class LaneWalk {
+/// A strip's rays against the tree's large triangles.
+class LargeTest {
  public:
-  void begin(const SearchTree& tree, const vec3<double>& origin, const vec3<double>& direction,
-             std::int32_t left_face) {
-    const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    const double scale = std::ldexp(1.0, -std::ilogb(largest));
-    const vec3<double> from = (origin - tree.anchor) * tree.unit;
-    origin_ = {float(from.x), float(from.y), float(from.z)};
-    inverse_ = {inverse(direction.x * scale), inverse(direction.y * scale), inverse(direction.z * scale)};
-    distance_unit_ = tree.unit / scale;
-    latest_ = std::numeric_limits<float>::infinity();
-    left_face_ = left_face;
-    stack_size_ = 0;
-    leaf_ = {};
-    push(0.0f, 0);
-  }
-
-  /// A hit at this distance along the ray makes all boxes behind it needless.
-  void hit_at(double distance) {
-    constexpr double kFarther = 1 + 0x1p-20;
-    latest_ = float(distance * distance_unit_ * kFarther);
-  }
-
-  /// The next triangle whose box the ray meets; -1 if none is left.
-  int next(const SearchTree& tree, const MonoTriangles& triangles) {
-    while (true) {
-      while (leaf_.count > 0) {
-        --leaf_.count;
-        const int triangle = tree.order[std::size_t(leaf_.first++)];
-        if (triangles(triangle).face != left_face_) return triangle;
+  LargeTest(const PrefilterRay& ray, const std::vector<LargeTriangle>& large) {
+    constexpr int kInChunk = prefilter_detail::kLanesOfChunk;
+    for (int i = 0; i < prefilter_detail::Floats::kChunks; ++i) {
+      const prefilter_detail::FloatChunk length_bound = ray.length_bound(i);
+      for (std::size_t k = 0; k < large.size(); ++k) {
+        const prefilter_detail::FloatCrossing at = ray.crossing(large[k].triangle, i);
+        CrossingBounds bounds(at, ray.leaves(large[k].triangle, i));
+        if (bounds.may == 0) continue;
+        bounds.set_others(at, length_bound * large[k].certain_determinant);
+        may_[k] = std::uint8_t(may_[k] | bounds.may << (i * kInChunk));
+        certain_[k] = std::uint8_t(certain_[k] | bounds.certain << (i * kInChunk));
+        std::memcpy(earliest_[k] + i * kInChunk, &bounds.earliest, sizeof(bounds.earliest));
+        std::memcpy(latest_[k] + i * kInChunk, &bounds.latest, sizeof(bounds.latest));
       }
-      if (stack_size_ == 0) return -1;
-      const Entry entry = stack_[--stack_size_];
-      if (entry.entry > latest_) continue;
-      if (entry.child >= SearchTree::kFirstLeaf) {
-        leaf_ = tree.leaves[entry.child - SearchTree::kFirstLeaf];
-      } else {
-        visit(tree.nodes[entry.child]);
-      }
+    }
+  }
+  /// Tells a lane's walk which ones its ray may cross.
+  void tell(int lane, const std::vector<LargeTriangle>& large, RayWalk& walk) const {
+    const int place = cn::place_of_lane<float>(lane);
+    for (std::uint64_t left = bit_of_each(may_, place); left != 0; left &= left - 1) {
+      const int k = __builtin_ctzll(left);
+      walk.meet(large[std::size_t(k)], earliest_[k][place], latest_[k][place],
+                (certain_[k] >> place & 1u) != 0);
     }
   }
 
  private:
-  using FloatChunk = prefilter_detail::FloatChunk;
-  static constexpr int kInChunk = prefilter_detail::kLanesOfChunk;
-  static constexpr int kStack = SearchTree::kMostLevels * (SearchNode::kChildren - 1) + 1;
-  struct Entry {
-    float entry;
-    std::uint32_t child;
-  };
-
-  static float inverse(double component) {
-    constexpr double kLeast = 1e-20;  // a ray that leaves a plane more slowly does not leave it
-    return float(1.0 / (std::abs(component) < kLeast ? std::copysign(kLeast, component) : component));
-  }
-  void push(float entry, std::uint32_t child) { stack_[stack_size_++] = {entry, child}; }
-
-  /// Pushes the children that the ray meets, the nearest last.
-  void visit(const SearchNode& node) {
-    using prefilter_detail::greater;
-    using prefilter_detail::lesser;
-    using prefilter_detail::same;
-    constexpr float kEarlier = 1 - 0x1p-20f;
-    constexpr float kLater = 1 + 0x1p-20f;
-    alignas(64) float entries[SearchNode::kChildren];
-    unsigned meets = 0;
-    for (int first = 0; first < SearchNode::kChildren; first += kInChunk) {
-      FloatChunk entry = same(0.0f);
-      FloatChunk exit = same(latest_);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const FloatChunk lower = chunk_at(node.lower[axis] + first);
-        const FloatChunk upper = chunk_at(node.upper[axis] + first);
-        const FloatChunk a = (lower - origin_[axis]) * inverse_[axis];
-        const FloatChunk b = (upper - origin_[axis]) * inverse_[axis];
-        entry = greater(entry, lesser(a, b) * kEarlier);
-        exit = lesser(exit, greater(a, b) * kLater);
-      }
-      std::memcpy(entries + first, &entry, sizeof(entry));
-      meets |= (~prefilter_detail::signs(exit - entry) & ((1u << kInChunk) - 1)) << first;
-    }
-    meets &= node.present;
-    const int bottom = stack_size_;
-    for (; meets != 0; meets &= meets - 1) {
-      const int child = __builtin_ctz(meets);
-      int place = stack_size_++;
-      for (; place > bottom && stack_[place - 1].entry < entries[child]; --place)
-        stack_[place] = stack_[place - 1];
-      stack_[place] = {entries[child], node.child[child]};
-    }
-  }
-
-  static FloatChunk chunk_at(const float* from) {
-    FloatChunk chunk;
-    std::memcpy(&chunk, from, sizeof(chunk));
-    return chunk;
-  }
-
-  std::array<float, 3> origin_{};
-  std::array<float, 3> inverse_{};
-  double distance_unit_ = 1;
-  float latest_ = 0;
-  std::int32_t left_face_ = kNoFace;
-  SearchLeaf leaf_;
-  int stack_size_ = 0;
-  Entry stack_[kStack];
+  std::uint8_t may_[64] = {};  ///< for each triangle the lanes, in the order of floats
+  std::uint8_t certain_[SearchTree::kMostLarge] = {};
+  float earliest_[SearchTree::kMostLarge][cn::kStripLanes];
+  float latest_[SearchTree::kMostLarge][cn::kStripLanes];
 };
 
 /// The walks of a strip's enabled lanes.
 class StripWalk {
  public:
-  StripWalk(const RayOperands& ray, const SearchTree& tree, const MonoTriangles& triangles)
+  /// @param light_face of shadow rays whose nearest hit matters only if it is their light; kNoFace of others
+  StripWalk(const RayOperands& ray, const poly<std::int32_t>& light_face, const SearchTree& tree,
+            const MonoTriangles& triangles)
       : tree_(tree), triangles_(triangles), active_(cn::mask_bits(cn::strip.enabled)) {
-    const auto doubles = [](const poly<double>& from, double(&to)[cn::kStripLanes]) {
-      cn::store_lanes(to, from.lanes());
-    };
-    double origin[3][cn::kStripLanes];
-    double direction[3][cn::kStripLanes];
-    doubles(ray.origin.x, origin[0]);
-    doubles(ray.origin.y, origin[1]);
-    doubles(ray.origin.z, origin[2]);
-    doubles(ray.direction.x, direction[0]);
-    doubles(ray.direction.y, direction[1]);
-    doubles(ray.direction.z, direction[2]);
+    const PrefilterRay in_floats(ray, tree.anchor, tree.unit);
+    const LargeTest large(in_floats, tree.large);
     std::int64_t left_face[cn::kStripLanes];
+    std::int64_t light[cn::kStripLanes];
+    double scale[cn::kStripLanes];
     cn::store_lanes(left_face, ray.left_face.lanes());
-    for (int lane = 0; lane < cn::kStripLanes; ++lane)
-      if ((active_ >> lane & 1u) != 0)
-        walk_[lane].begin(tree_, {origin[0][lane], origin[1][lane], origin[2][lane]},
-                          {direction[0][lane], direction[1][lane], direction[2][lane]},
-                          static_cast<std::int32_t>(left_face[lane]));
+    cn::store_lanes(light, light_face.lanes());
+    cn::store_lanes(scale, in_floats.scale().lanes());
+    for (unsigned lanes = active_; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      walk_[lane].begin(tree_,
+                        {in_floats.origin(lane), in_floats.direction(lane), tree_.unit / scale[lane],
+                         static_cast<std::int32_t>(left_face[lane]), static_cast<std::int32_t>(light[lane])});
+      large.tell(lane, tree_.large, walk_[lane]);
+    }
   }
 
   /// Gives each lane that has one left its next triangle, the others any. Returns the lanes that have one.
@@ -151,7 +74,7 @@ class StripWalk {
     for (int lane = 0; lane < cn::kStripLanes; ++lane) {
       at[lane] = nullptr;
       if ((active_ >> lane & 1u) == 0) continue;
-      const int triangle = walk_[lane].next(tree_, triangles_);
+      const int triangle = walk_[lane].next(tree_);
       if (triangle < 0) {
         active_ &= ~(1u << lane);
       } else {
@@ -163,12 +86,22 @@ class StripWalk {
     return active_;
   }
 
-  void hits_at(const poly<double>& distance, unsigned lanes) {
+  /// The lanes whose walk is not over.
+  unsigned going_on() const {
+    unsigned lanes = 0;
+    for (int lane = 0; lane < cn::kStripLanes; ++lane)
+      lanes |= static_cast<unsigned>(!walk_[lane].is_over()) << lane;
+    return lanes & active_;
+  }
+
+  /// @param at the triangles that these lanes hit
+  void hits_at(const poly<double>& distance, const TriangleRecord* const (&at)[cn::kStripLanes],
+               unsigned lanes) {
     double distances[cn::kStripLanes];
     cn::store_lanes(distances, distance.lanes());
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = __builtin_ctz(lanes);
-      walk_[lane].hit_at(distances[lane]);
+      walk_[lane].hit_at(distances[lane], at[lane]->face);
     }
   }
 
@@ -176,27 +109,37 @@ class StripWalk {
   const SearchTree& tree_;
   const MonoTriangles& triangles_;
   unsigned active_;
-  LaneWalk walk_[cn::kStripLanes];
+  RayWalk walk_[cn::kStripLanes];
 };
 
-/// search() of all triangles by way of the simulator's tree: the same result, and no charge.
-template <class Found>
-void search_tree(const RayOperands& ray, double reach, const MonoTriangles& triangles, const SearchTree& tree,
-                 Found& nearest) {
+/// Takes the triangles of those lanes where they are hit and come before `nearest`. Returns the lanes that
+/// do.
+inline mask take_if_before(const RayOperands& ray, double reach,
+                           const TriangleRecord* const (&at)[cn::kStripLanes], unsigned lanes,
+                           Nearest& nearest) {
+  const PolyTriangle triangle = LaneTriangles(at).load(ray.is_in_layers);
+  const Crossing crossing(ray, triangle);
+  const mask candidate = crossing.inside & mask(cn::mask_from_bits(lanes));
+  mask in_box = is_certain(crossing.determinant, ray);
+  cn::poly_if_any(candidate & !in_box,
+                  [&] { in_box = in_box | meets_padded_box(ray, reach, crossing, triangle); });
+  const mask better = candidate & in_box & comes_before(ray, crossing, triangle.number, nearest);
+  cn::poly_if(better, [&] { nearest.take(crossing, triangle); });
+  return better;
+}
+
+/// search() of all triangles by way of the simulator's tree: the same result, and no charge. A shadow ray
+/// that does not see its light hits something that is in its way, not always the nearest.
+/// @param light_face as of StripWalk
+inline void search_tree(const RayOperands& ray, const poly<std::int32_t>& light_face, double reach,
+                        const MonoTriangles& triangles, const SearchTree& tree, Nearest& nearest) {
   if (tree.empty()) return;
-  StripWalk walk(ray, tree, triangles);
+  StripWalk walk(ray, light_face, tree, triangles);
   const TriangleRecord* at[cn::kStripLanes];
   for (unsigned left = walk.next(at); left != 0; left = walk.next(at)) {
-    const PolyTriangle triangle = LaneTriangles(at).load(ray.is_in_layers);
-    const Crossing crossing(ray, triangle);
-    const mask candidate = crossing.inside & mask(cn::mask_from_bits(left));
-    mask in_box = is_certain(crossing.determinant, ray);
-    cn::poly_if_any(candidate & !in_box,
-                    [&] { in_box = in_box | meets_padded_box(ray, reach, crossing, triangle); });
-    const mask better = candidate & in_box & comes_before(ray, crossing, triangle.number, nearest);
-    cn::poly_if(better, [&] { nearest.take(crossing, triangle); });
-    walk.hits_at(nearest.distance / cn::abs(nearest.determinant),
-                 cn::mask_bits(better.lanes()) & cn::mask_bits(cn::strip.enabled));
+    const mask better = take_if_before(ray, reach, at, left, nearest);
+    const unsigned news = walk.going_on() & cn::mask_bits(better.lanes()) & cn::mask_bits(cn::strip.enabled);
+    if (news != 0) walk.hits_at(nearest.distance / cn::abs(nearest.determinant), at, news);
   }
 }
 

@@ -18,7 +18,9 @@ class RayStage : public Stage {
   void save(std::uint64_t step, int block) override;
 
  private:
-  void choose_search(IntersectArguments& arguments);
+  /// Returns the kernel.
+  const cn::Kernel<IntersectArguments>& choose_search(IntersectArguments& arguments);
+  SearchTree make_tree(const IntersectArguments& arguments) const;
 
   // The simulator's, made when the triangles are first read:
   Prefilter prefilter_;

@@ -44,6 +44,7 @@ struct RenderResult {
 
   Film film;
   path_tracer::RunCounts counts;
+  TextureUses textures;
   std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip
   std::string observation_failures;    ///< files that could not be completed, in one line
   double cpu_seconds = 0;              ///< of the run itself, without loading and writing

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <set>
 #include <sstream>
 
@@ -29,8 +30,25 @@ bool is_kept(const std::string& key) {
   return counter != nullptr && counter->kind == CounterKind::counted && group_of(key) != kSimulatorSection;
 }
 
-FlatStatistics kept_of(const GoldenRun& run, const Scene& scene) {
+using LightSurveys =
+    std::map<std::pair<std::string, path_tracer::LightSampling>, std::shared_ptr<const LightSurvey>>;
+
+/// One survey for all runs of a scene.
+LightSurveys survey_lights_of(const GoldenGrid& grid, const GoldenScenes& scenes) {
+  LightSurveys surveys;
+  for (const GoldenRun& run : grid.runs) {
+    const path_tracer::LightSampling sampling = run.options.program.light_sampling;
+    std::shared_ptr<const LightSurvey>& survey = surveys[{run.scene, sampling}];
+    if (!survey)
+      survey = std::make_shared<const LightSurvey>(make_normal_light_survey(scenes.at(run.scene), sampling));
+  }
+  return surveys;
+}
+
+FlatStatistics kept_of(const GoldenRun& run, const Scene& scene,
+                       const std::shared_ptr<const LightSurvey>& light_survey) {
   RenderOptions options = run.options;
+  options.light_survey = light_survey;
   options.program = built_for(scene, options.program);
   choose_tree(TriangleCount(scene), options.chip, run.given, options.program);
   const RenderResult result = render_on_chip(scene, options);
@@ -182,9 +200,13 @@ GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed)
 
 GoldenTables run_golden(const GoldenGrid& grid, const GoldenScenes& scenes, int jobs,
                         const std::function<void(double)>& progress) {
+  const LightSurveys surveys = survey_lights_of(grid, scenes);
   std::vector<std::function<std::string()>> work;
   for (const GoldenRun& run : grid.runs)
-    work.emplace_back([&] { return json_text(kept_of(run, scenes.at(run.scene))); });
+    work.emplace_back([&] {
+      return json_text(
+          kept_of(run, scenes.at(run.scene), surveys.at({run.scene, run.options.program.light_sampling})));
+    });
   const std::vector<std::string> results = run_in_processes(work, jobs, [&](int finished) {
     if (progress) progress(finished / double(work.size()));
   });

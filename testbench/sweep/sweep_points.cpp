@@ -81,7 +81,11 @@ SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
     point.id = short_digest(inputs);
     return point;
   }
-  const LoadedScene& loaded = scene_of(*run);
+  LoadedScene& loaded = scene_of(*run);
+  const path_tracer::LightSampling sampling = run->options.program.light_sampling;
+  std::shared_ptr<const LightSurvey>& survey = loaded.light_surveys[sampling];
+  if (!survey) survey = std::make_shared<const LightSurvey>(make_normal_light_survey(loaded.scene, sampling));
+  run->options.light_survey = survey;
   point.scene = &loaded.scene;
   point.request = {run->scene, run->options, false};
   point.id = short_digest(all_inputs(*run) + loaded.digest);
@@ -90,7 +94,7 @@ SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
   return point;
 }
 
-const Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
+Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
   std::unique_ptr<LoadedScene>& loaded = scenes_[run.scene + "\n" + run.size];
   if (!loaded) {
     if (run.scene.empty())

@@ -39,10 +39,11 @@ class Sweep {
   struct LoadedScene {
     Scene scene;
     std::string digest;
+    std::map<path_tracer::LightSampling, std::shared_ptr<const LightSurvey>> light_surveys = {};
   };
 
   SweepPoint make_point(const SweepFile& file, std::uint64_t number);
-  const LoadedScene& scene_of(const RunSettings& run);
+  LoadedScene& scene_of(const RunSettings& run);
 
   std::vector<std::string> keys_;
   std::vector<std::vector<std::string>> axes_;

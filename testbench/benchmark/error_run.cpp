@@ -35,6 +35,7 @@ class GrowingRender {
         film_(scene.film, film_scale(scene), options.film_sums) {}
 
   void add(const path_tracer::Work& work) {
+    if (!options_.image) options_.image = make_image(scene_, options_);
     const PartialRender part = render_parts(scene_, options_, machine_, {work}).front();
     film_.merge(part.film);
     cpu_seconds_ += part.cpu_seconds;
@@ -49,7 +50,7 @@ class GrowingRender {
 
  private:
   const Scene& scene_;
-  const RenderOptions& options_;
+  RenderOptions options_;
   MachineKind machine_;
   Film film_;
   double cpu_seconds_ = 0;
@@ -68,8 +69,10 @@ std::vector<const path_tracer::ProgramOption*> options_of_curves() {
 
 path_tracer::ProgramConfig program_for(const Scene& scene, const model::ChipConfig& chip,
                                        const path_tracer::ProgramConfig& program, const GivenOptions& given) {
-  path_tracer::ProgramConfig fitted = built_for(scene, program);
+  path_tracer::ProgramConfig fitted = program;
   if (given.count("light_candidates") == 0) fitted.light_candidates = suited_light_candidates(scene);
+  if (given.count("estimator") == 0) fitted.estimator = suited_estimator(scene, fitted.light_candidates);
+  fitted = built_for(scene, fitted);
   choose_tree(TriangleCount(scene), chip, given, fitted);
   return fitted;
 }

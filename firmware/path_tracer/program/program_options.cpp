@@ -105,6 +105,13 @@ void write_empty_blocks(ProgramConfig& config, const OptionValue& value) {
   config.skips_empty_blocks = std::get<std::string>(value) == "skip";
 }
 
+OptionValue read_constant_textures(const ProgramConfig& config) {
+  return std::string(config.folds_constant_textures ? "factor" : "look_up");
+}
+void write_constant_textures(ProgramConfig& config, const OptionValue& value) {
+  config.folds_constant_textures = std::get<std::string>(value) == "factor";
+}
+
 Names built_for_names() {
   Names names;
   for (const ExtraFeature& feature : kBuiltForTable) names.emplace_back(feature.name);
@@ -142,6 +149,9 @@ Options bins() {
           {"empty_blocks", "-", std::string("skip"), Names{"skip", "process"},
            "blocks of slots without a path: left out, or processed like the others", &read_empty_blocks,
            &write_empty_blocks},
+          {"constant_textures", "-", std::string("factor"), Names{"factor", "look_up"},
+           "textures whose texels are all equal: factors of their materials, or looked up like others",
+           &read_constant_textures, &write_constant_textures},
           {"built_for", "-", std::string(kBuiltForTable[kBuiltForScene].name), built_for_names(),
            "what the firmware is built for: the features of its scene, which pays for nothing else, with one "
            "more, "
@@ -162,26 +172,28 @@ Options bins() {
 
 // The defaults give the least error for the time (`csx600 bench error`, Cornell box).
 Options sampling() {
-  return {choice<&ProgramConfig::sampler>(
-              "sampler", Sampler::sobol, kSamplerNames,
-              "random numbers: philox (independent) or sobol (Owen-scrambled: a pixel's are stratified)"),
-          choice<&ProgramConfig::light_sampling>(
-              "light_sampling", LightSampling::solid_angle, kLightSamplingNames,
-              "points of a light: uniform in its area, or in the solid angle that it subtends"),
-          choice<&ProgramConfig::estimator>("estimator", Estimator::per_lobe, kEstimatorNames,
-                                            "light of emitting triangles: by shadow rays, by shadow rays and "
-                                            "hits weighed against each other, or "
-                                            "as suits each surface"),
-          chosen("8 where lights are many",
-                 one_of<&ProgramConfig::light_candidates>(
-                     "light_candidates", "lights", 1, {1, 2, 4, kMaxLightCandidates},
-                     "lights of which a vertex takes one by its estimated effect there; 1: by chance alone")),
-          integer<&ProgramConfig::roulette_start>("roulette_start", "segments", 3, {0, kMaxSegments},
-                                                  "segments that a path lives without Russian roulette"),
-          real<&ProgramConfig::max_survival>("max_survival", "-", 0.999999, {0, 1},
-                                             "largest probability with which roulette lets a path go on"),
-          {"seed", "-", std::uint64_t{1}, Unsigned64{}, "seed of the random numbers",
-           &Field<&ProgramConfig::seed>::read_as_held, &Field<&ProgramConfig::seed>::write_as_held}};
+  return {
+      choice<&ProgramConfig::sampler>(
+          "sampler", Sampler::sobol, kSamplerNames,
+          "random numbers: philox (independent) or sobol (Owen-scrambled: a pixel's are stratified)"),
+      choice<&ProgramConfig::light_sampling>(
+          "light_sampling", LightSampling::solid_angle, kLightSamplingNames,
+          "points of a light: uniform in its area, or in the solid angle that it subtends"),
+      chosen("mis under an environment's image",
+             choice<&ProgramConfig::estimator>(
+                 "estimator", Estimator::per_lobe, kEstimatorNames,
+                 "light of emitting triangles and of an environment's image: by shadow rays, by shadow rays "
+                 "and hits weighed against each other, or as suits each surface")),
+      chosen("8 where lights are many",
+             one_of<&ProgramConfig::light_candidates>(
+                 "light_candidates", "lights", 1, {1, 2, 4, kMaxLightCandidates},
+                 "lights of which a vertex takes one by its estimated effect there; 1: by chance alone")),
+      integer<&ProgramConfig::roulette_start>("roulette_start", "segments", 3, {0, kMaxSegments},
+                                              "segments that a path lives without Russian roulette"),
+      real<&ProgramConfig::max_survival>("max_survival", "-", 0.999999, {0, 1},
+                                         "largest probability with which roulette lets a path go on"),
+      {"seed", "-", std::uint64_t{1}, Unsigned64{}, "seed of the random numbers",
+       &Field<&ProgramConfig::seed>::read_as_held, &Field<&ProgramConfig::seed>::write_as_held}};
 }
 
 Options tree() {

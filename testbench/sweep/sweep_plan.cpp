@@ -3,12 +3,11 @@
 #include <algorithm>
 
 namespace testbench {
-
 namespace {
 
 /// A recording is the stream of one array.
 bool is_of_one_array(const SweepPoint& point) {
-  const model::ChipConfig& chip = point.request.options.chip;
+  const model::ChipConfig& chip = chip_of(point);
   return chip.board.chips * chip.chip.arrays == 1;
 }
 

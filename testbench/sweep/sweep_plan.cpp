@@ -3,21 +3,11 @@
 #include <algorithm>
 
 namespace testbench {
-
 namespace {
-
-const model::ChipConfig& chip_of(const RenderPoint& point) {
-  return point.request.options.chip;
-}
-
-const model::ChipConfig& chip_of(const PlugInSettings& point) {
-  return point.options.chip;
-}
 
 /// A recording is the stream of one array.
 bool is_of_one_array(const SweepPoint& point) {
-  const model::ChipConfig& chip =
-      std::visit([](const auto& of) -> const model::ChipConfig& { return chip_of(of); }, point.run);
+  const model::ChipConfig& chip = chip_of(point);
   return chip.board.chips * chip.chip.arrays == 1;
 }
 

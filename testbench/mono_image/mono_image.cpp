@@ -10,6 +10,7 @@
 #include "firmware/path_tracer/materials/absorption.hpp"
 #include "testbench/bvh/tree_image.hpp"
 #include "testbench/mono_image/barycentric.hpp"
+#include "testbench/mono_image/constant_textures.hpp"
 #include "testbench/mono_image/coverage.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/lights.hpp"
@@ -225,7 +226,8 @@ void put_textures(MonoImage& image, const TextureImages& textures, std::size_t t
                textures.record_of(i, path_tracer::TextureSlot(slot), first));
 }
 
-void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& lights) {
+void put_surfaces(MonoImage& image, const Triangles& triangles, const std::vector<Material>& materials,
+                  const Lights& lights) {
   const path_tracer::RecordSizes& sizes = image.layout.sizes;
   const bool has_normals = image.layout.features.normals;
   std::vector<std::int32_t> light_of(triangles.count(), path_tracer::kNoLight);
@@ -234,7 +236,7 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
       light_of[triangle] = static_cast<std::int32_t>(light);
   for (std::size_t i = 0; i < triangles.count(); ++i) {
     const Triangle& triangle = triangles.scene.triangles[i];
-    const Material& material = triangles.scene.materials[std::size_t(triangle.material)];
+    const Material& material = materials[std::size_t(triangle.material)];
     const SurfaceRecord record = surface_record(triangle, material, triangles.faces[i], light_of[i]);
     const std::uint64_t place = i * std::uint64_t(sizes.surface);
     std::memcpy(image.bytes.data() + image.layout.surfaces.address + place, &record, sizeof(record));
@@ -249,9 +251,10 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const Lights& li
 }
 
 /// The kind of each triangle's material, where hits wait in bins of their kind.
-void put_shading_kinds(MonoImage& image, const Scene& scene, path_tracer::Shading shading) {
+void put_shading_kinds(MonoImage& image, const Scene& scene, const std::vector<Material>& materials,
+                       path_tracer::Shading shading) {
   if (image.layout.sizes.shading_kind == path_tracer::RecordSizes::kNone) return;
-  const std::vector<std::int32_t> kinds = shading_kinds(scene, shading);
+  const std::vector<std::int32_t> kinds = shading_kinds(scene, materials, shading);
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
     put_tail(image, i, image.layout.sizes.shading_kind,
              path_tracer::ShadingKindRecord{kinds[std::size_t(scene.triangles[i].material)]});
@@ -274,14 +277,16 @@ void put_outside(MonoImage& image, const Environment& environment, const Lights&
 }  // namespace
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options) {
-  const path_tracer::ProgramConfig config = built_for(scene, options);
+  const ShownMaterials shown = shown_materials(scene, options);
+  path_tracer::ProgramConfig config = options;
+  config.features = features_of(scene, shown.materials, options);
   const Triangles triangles(scene);
   const Lights lights = make_lights(scene, triangles.faces, config.light_sampling);
   const double reach = reach_of(scene);
   TreeImage tree;
   if (config.uses_tree()) tree = make_tree(triangles, reach, config);
 
-  const TextureImages textures(scene, config.features.textures);
+  const TextureImages textures(scene, shown.materials, config.features.textures);
 
   path_tracer::SceneCounts counts;
   counts.triangles = static_cast<int>(scene.triangles.size());
@@ -293,6 +298,7 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   counts.suns = static_cast<int>(lights.suns.size());
   counts.has_layers = triangles.layers.layers().any;
   MonoImage image;
+  image.textures = shown.textures;
   image.layout = path_tracer::make_layout(counts, num_pes, config);
   image.layout.reach = reach;
   if (config.features.environment) image.layout.environment = to_record(scene.environment.constant);
@@ -304,9 +310,9 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   for (std::size_t place = 0; place < order.size(); ++place)
     put_triangle(image, triangles, order[place], place);
   if (config.uses_tree()) put_light_runs(image, triangles, lights);
-  put_surfaces(image, triangles, lights);
+  put_surfaces(image, triangles, shown.materials, lights);
   put_textures(image, textures, triangles.count());
-  put_shading_kinds(image, scene, config.shading);
+  put_shading_kinds(image, scene, shown.materials, config.shading);
   put(image, image.layout.lights, lights.records.data(), lights.records.size());
   if (config.resamples_lights())
     put(image, image.layout.light_candidates, lights.candidates.data(), lights.candidates.size());

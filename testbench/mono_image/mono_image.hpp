@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "firmware/path_tracer/program/layout.hpp"
+#include "testbench/mono_image/constant_textures.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
@@ -15,6 +16,7 @@ struct MonoImage {
   std::vector<std::uint8_t> bytes;  ///< layout.scene_bytes bytes
   /// The content of layout.camera_samples; empty in a run without a list.
   std::vector<path_tracer::CameraSampleRecord> camera_samples = {};
+  TextureUses textures = {};
 
   std::size_t camera_sample_bytes() const {
     return camera_samples.size() * sizeof(path_tracer::CameraSampleRecord);

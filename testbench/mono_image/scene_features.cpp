@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/path_tracer/materials/material.hpp"
+#include "testbench/mono_image/constant_textures.hpp"
 #include "testbench/mono_image/coverage.hpp"
 #include "testbench/mono_image/material_records.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
@@ -87,21 +88,26 @@ path_tracer::LightKinds light_kinds(const Scene& scene) {
 }  // namespace
 
 path_tracer::Features features_of(const Scene& scene, const path_tracer::ProgramConfig& config) {
-  const std::vector<bool> is_used = materials_in_use(scene.triangles, scene.materials.size());
+  return features_of(scene, shown_materials(scene, config).materials, config);
+}
+
+path_tracer::Features features_of(const Scene& scene, const std::vector<Material>& materials,
+                                  const path_tracer::ProgramConfig& config) {
+  const std::vector<bool> is_used = materials_in_use(scene.triangles, materials.size());
   path_tracer::Features features;
   features.lobes = {};
   for (std::size_t i = 0; i < is_used.size(); ++i)
-    if (is_used[i]) add_lobes(scene, scene.materials[i], features.lobes);
+    if (is_used[i]) add_lobes(scene, materials[i], features.lobes);
   if (!features.lobes.specular() && !features.lobes.coat && !features.lobes.sheen)
     features.lobes.diffuse = true;
   for (std::size_t i = 0; i < is_used.size(); ++i)
-    if (is_used[i]) add_textures(scene.materials[i], features.lobes, features.textures);
+    if (is_used[i]) add_textures(materials[i], features.lobes, features.textures);
   for (std::size_t i = 0; i < is_used.size(); ++i)
-    if (is_used[i]) add_coverage(scene, scene.materials[i], features);
+    if (is_used[i]) add_coverage(scene, materials[i], features);
   features.textures.roughness_with_metallic =
       features.textures.has(path_tracer::TextureSlot::roughness) &&
       features.textures.has(path_tracer::TextureSlot::metallic) &&
-      std::all_of(scene.materials.begin(), scene.materials.end(), shows_roughness_with_metallic);
+      std::all_of(materials.begin(), materials.end(), shows_roughness_with_metallic);
   features.lights = light_kinds(scene);
   features.normals = !scene.corners.normals.empty();
   features.environment = scene.environment.is_lit() && !scene.environment.image;
@@ -112,7 +118,7 @@ path_tracer::Features features_of(const Scene& scene, const path_tracer::Program
                                  (config.estimator == path_tracer::Estimator::mis ||
                                   (config.estimator == path_tracer::Estimator::per_lobe && has_shared));
   if (config.bins_hits()) {
-    const std::vector<std::int32_t> kinds = shading_kinds(scene, config.shading);
+    const std::vector<std::int32_t> kinds = shading_kinds(scene, materials, config.shading);
     features.shading_kinds = 1 + *std::max_element(kinds.begin(), kinds.end());
   }
   return features;

@@ -7,6 +7,9 @@ namespace testbench {
 
 /// What the firmware must be built for to render the scene with these options.
 path_tracer::Features features_of(const Scene& scene, const path_tracer::ProgramConfig& config);
+/// @param materials of the scene as the firmware is told them (constant_textures.hpp)
+path_tracer::Features features_of(const Scene& scene, const std::vector<Material>& materials,
+                                  const path_tracer::ProgramConfig& config);
 
 /// Adds the lobes that a material has at any of its texels.
 void add_lobes(const Scene& scene, const Material& material, path_tracer::Lobes& lobes);

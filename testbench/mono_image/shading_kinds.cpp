@@ -25,14 +25,15 @@ std::vector<std::int32_t> signature(const Scene& scene, const Material& material
 
 }  // namespace
 
-std::vector<std::int32_t> shading_kinds(const Scene& scene, path_tracer::Shading shading) {
-  const std::vector<bool> in_use = materials_in_use(scene.triangles, scene.materials.size());
+std::vector<std::int32_t> shading_kinds(const Scene& scene, const std::vector<Material>& materials,
+                                        path_tracer::Shading shading) {
+  const std::vector<bool> in_use = materials_in_use(scene.triangles, materials.size());
   std::map<std::vector<std::int32_t>, std::int32_t> kind_of;
-  std::vector<std::int32_t> kinds(scene.materials.size(), 0);
+  std::vector<std::int32_t> kinds(materials.size(), 0);
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (!in_use[i]) continue;
     const auto next = static_cast<std::int32_t>(std::min<std::size_t>(kind_of.size(), kMaxShadingKinds - 1));
-    kinds[i] = kind_of.emplace(signature(scene, scene.materials[i], shading), next).first->second;
+    kinds[i] = kind_of.emplace(signature(scene, materials[i], shading), next).first->second;
   }
   return kinds;
 }

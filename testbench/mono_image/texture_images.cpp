@@ -19,17 +19,6 @@ using path_tracer::TextureSlot;
 
 constexpr int kAlphaChannel = 3;
 
-/// The code of a channel; grey is red, green and blue, and alpha is 255 in an image without.
-std::uint8_t code_of(const Image& image, std::size_t texel, int channel) {
-  const std::uint8_t* const codes = &image.texels[texel * std::size_t(image.channels)];
-  if (channel == kAlphaChannel) return has_alpha(image) ? codes[image.channels - 1] : 255;
-  return codes[image.channels <= 2 ? 0 : channel];
-}
-
-std::size_t texels_of(const Image& image) {
-  return std::size_t(image.width) * std::size_t(image.height);
-}
-
 TexelFootprint footprint(const Image& image, int x, int y, int channel) {
   const int right = (x + 1) % image.width;
   const int below = (y + 1) % image.height;
@@ -97,6 +86,12 @@ AffinePlace affine_place(const CornerPlaces& corners, const Triangle& triangle) 
 
 }  // namespace
 
+std::uint8_t code_of(const Image& image, std::size_t texel, int channel) {
+  const std::uint8_t* const codes = &image.texels[texel * std::size_t(image.channels)];
+  if (channel == kAlphaChannel) return has_alpha(image) ? codes[image.channels - 1] : 255;
+  return codes[image.channels <= 2 ? 0 : channel];
+}
+
 const TextureReference& shown_texture(const Material& material, TextureSlot slot) {
   static const TextureReference kNone;
   switch (slot) {
@@ -144,17 +139,18 @@ bool shows_roughness_with_metallic(const Material& material) {
          a.transform.scale == b.transform.scale;
 }
 
-TextureImages::TextureImages(const Scene& scene, const path_tracer::TextureSlots& slots)
-    : scene_(scene), slots_(slots) {
+TextureImages::TextureImages(const Scene& scene, const std::vector<Material>& materials,
+                             const path_tracer::TextureSlots& slots)
+    : scene_(scene), materials_(materials), slots_(slots) {
   if (!slots.any()) return;
-  const std::vector<bool> is_used = materials_in_use(scene.triangles, scene.materials.size());
+  const std::vector<bool> is_used = materials_in_use(scene.triangles, materials.size());
   for (std::size_t i = 0; i < is_used.size(); ++i) {
     for (int index = 0; index < path_tracer::kTextureSlots; ++index) {
       const auto slot = TextureSlot(index);
-      const TextureReference& reference = reference_of(scene.materials[i], slot);
+      const TextureReference& reference = reference_of(materials[i], slot);
       if (!is_used[i] || !slots.looks_up(slot) || !reference) continue;
       const Image& image = scene.textures[std::size_t(reference.texture)].image;
-      if (place_of_.emplace(use_of(scene.materials[i], slot), bytes_).second)
+      if (place_of_.emplace(use_of(materials[i], slot), bytes_).second)
         bytes_ += texels_of(image) * std::uint64_t(path_tracer::footprint_bytes(slot));
     }
   }
@@ -203,7 +199,7 @@ void TextureImages::write(std::uint8_t* to) const {
 TextureRecord TextureImages::record_of(std::size_t triangle, TextureSlot slot, cn::MonoAddress first) const {
   TextureRecord record;
   const Triangle& of = scene_.triangles[triangle];
-  const Material& material = scene_.materials[std::size_t(of.material)];
+  const Material& material = materials_[std::size_t(of.material)];
   const TextureReference& reference = reference_of(material, slot);
   if (!reference) return record;
   const Texture& texture = scene_.textures[std::size_t(reference.texture)];

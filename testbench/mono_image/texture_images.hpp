@@ -3,11 +3,19 @@
 #include <cstdint>
 #include <map>
 #include <tuple>
+#include <vector>
 
 #include "firmware/path_tracer/program/layout.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
+
+/// The code of a channel; grey is red, green and blue, and alpha is 255 in an image without.
+std::uint8_t code_of(const Image& image, std::size_t texel, int channel);
+
+inline std::size_t texels_of(const Image& image) {
+  return std::size_t(image.width) * std::size_t(image.height);
+}
 
 /// The texture that the firmware shows in a slot of a material; an empty reference if there is none.
 const TextureReference& shown_texture(const Material& material, path_tracer::TextureSlot slot);
@@ -28,8 +36,9 @@ TexturedRange textured_range(const Scene& scene, double factor, const TextureRef
 /// (firmware/path_tracer/records/tails.hpp).
 class TextureImages {
  public:
-  /// @param slots that the firmware is built for
-  TextureImages(const Scene& scene, const path_tracer::TextureSlots& slots);
+  /// @param materials as the firmware is told them @param slots that it is built for
+  TextureImages(const Scene& scene, const std::vector<Material>& materials,
+                const path_tracer::TextureSlots& slots);
 
   std::uint64_t bytes() const { return bytes_; }
   /// Writes bytes() bytes.
@@ -56,6 +65,7 @@ class TextureImages {
   Use use_of(const Material& material, path_tracer::TextureSlot slot) const;
 
   const Scene& scene_;
+  const std::vector<Material>& materials_;
   path_tracer::TextureSlots slots_;
   std::map<Use, std::uint64_t> place_of_;  ///< in bytes from the first texture
   std::uint64_t bytes_ = 0;

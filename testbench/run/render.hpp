@@ -44,6 +44,7 @@ struct RenderResult {
 
   Film film;
   path_tracer::RunCounts counts;
+  TextureUses textures;
   std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip; of all chips of the board together
   std::vector<ChipStatistics> chips = {};  ///< of each chip of a board; empty if there is one
   std::string observation_failures;        ///< files that could not be completed, in one line

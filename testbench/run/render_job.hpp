@@ -62,7 +62,9 @@ class RenderJob {
       : options_(options),
         image_(std::move(image)),
         relay_(paths_of(scene, options), progress),
-        result_(Film(scene.film, film_scale(scene), options.film_sums)) {}
+        result_(Film(scene.film, film_scale(scene), options.film_sums)) {
+    result_.textures = image_.textures;
+  }
 
   const MonoImage& image() const { return image_; }
   RenderResult& result() { return result_; }

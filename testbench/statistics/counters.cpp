@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "firmware/path_tracer/materials/lobe_table.hpp"
 #include "testbench/run/energy.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/system/simulator_time.hpp"
@@ -12,6 +13,7 @@ namespace testbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using path_tracer::LobeCount;
 using path_tracer::RunCounts;
 
 std::uint64_t rays(const RenderResult& run) {
@@ -45,6 +47,16 @@ Json paths_alive(const RunCounts& counts) {
     alive -= counts.paths_by_segments[i - 1];
     json[std::to_string(i)] = alive;
   }
+  return json;
+}
+
+/// An object with what `read` says of each lobe that a kernel has issued.
+template <class Read>
+Json by_lobe(const RunCounts& counts, const Read& read) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < counts.lobes.size(); ++i)
+    if (counts.lobes[i].blocks != 0)
+      json[std::string(path_tracer::kLobeTable[i].name)] = read(counts.lobes[i]);
   return json;
 }
 
@@ -94,6 +106,10 @@ const Counters<RenderResult>& run_counters() {
         "paths of the pixel with the fewest, of the mean one, of the one with the most",
         CounterKind::derived},
        samples_a_pixel},
+      {{"textures.used", "count", "textures of materials that triangles have, one for each field"},
+       [](const Run& run) { return Json(run.textures.all); }},
+      {{"textures.constant", "count", "of these, textures of one colour, which became factors"},
+       [](const Run& run) { return Json(run.textures.constant); }},
       {{"simulator.cpu_seconds", "s", "CPU time of the simulator, without loading and writing"},
        [](const Run& run) { return Json(run.cpu_seconds); }},
       {{"simulator.wall_seconds", "s", "the same by the wall clock"},
@@ -131,6 +147,14 @@ const Counters<RunCounts>& firmware_counters() {
        [](const RunCounts& c) { return Json(c.rays.passes_per_interval()); }},
       {{"rays_by_interval.*", "count", "rays, summed over the passes of each interval of time"},
        [](const RunCounts& c) { return Json(c.rays.intervals()); }},
+      {{"lobes.blocks.*", "count", "blocks for which the part of kernel shade with this lobe was issued"},
+       [](const RunCounts& c) { return by_lobe(c, [](const LobeCount& of) { return of.blocks; }); }},
+      {{"lobes.wanted_lanes.*", "count", "PEs of these blocks at a hit whose material has the lobe"},
+       [](const RunCounts& c) { return by_lobe(c, [](const LobeCount& of) { return of.wanted_lanes; }); }},
+      {{"lobes.simd_efficiency.*", "-", "wanted share of all PEs of these blocks", CounterKind::derived},
+       [](const RunCounts& c) {
+         return by_lobe(c, [](const LobeCount& of) { return of.simd_efficiency(); });
+       }},
       {{"traversal.leaf_loads", "count", "leaves that a ray loaded, with a tree"},
        [](const RunCounts& c) { return Json(c.traversal.leaf_loads); }},
       {{"traversal.treelet_loads", "count", "treelets that a ray loaded"},

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "firmware/path_tracer/materials/lobe_table.hpp"
 #include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/paper/paper.hpp"
 #include "testbench/run/energy.hpp"
@@ -100,10 +101,24 @@ std::string of_all(std::uint64_t skipped, std::uint64_t rest, const char* what) 
   return std::to_string(skipped) + " of " + std::to_string(skipped + rest) + " " + what;
 }
 
-void add_skips_row(const path_tracer::RunCounts& counts, Rows& rows) {
-  rows.emplace_back("skipped", of_all(counts.culled_shadow_rays, counts.shadow_rays, "shadow rays, ") +
-                                   of_all(counts.skipped_blocks, counts.blocks, "blocks of slots") +
-                                   " (csx600 bench skips: what that saves)");
+void add_skips_row(const RenderResult& result, Rows& rows) {
+  const path_tracer::RunCounts& counts = result.counts;
+  const TextureUses& textures = result.textures;
+  std::string row = of_all(counts.culled_shadow_rays, counts.shadow_rays, "shadow rays, ") +
+                    of_all(counts.skipped_blocks, counts.blocks, "blocks of slots");
+  if (textures.all > 0)
+    row += ", " + of_all(textures.constant, textures.all - textures.constant, "textures, of one colour");
+  rows.emplace_back("skipped", row + " (csx600 bench skips: what that saves)");
+}
+
+/// How much of the PEs each lobe's instructions had use for.
+void add_lobes_row(const path_tracer::RunCounts& counts, Rows& rows) {
+  std::string row;
+  for (std::size_t i = 0; i < counts.lobes.size(); ++i)
+    if (counts.lobes[i].blocks > 0)
+      row += (row.empty() ? "" : ", ") + std::string(path_tracer::kLobeTable[i].name) +
+             text(" %.0f %%", 100 * counts.lobes[i].simd_efficiency());
+  if (!row.empty()) rows.emplace_back("SIMD efficiency of lobes", row);
 }
 
 void add_traversal_row(const RenderRequest& request, const path_tracer::RunCounts& counts, Rows& rows) {
@@ -156,7 +171,8 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
                                          text(" of %.0f paths", double(counts.paths)) +
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));
   add_traversal_row(request, counts, rows);
-  add_skips_row(counts, rows);
+  add_skips_row(result, rows);
+  add_lobes_row(counts, rows);
   if (result.chip) add_chip_rows(result, rows);
   add_simulator_rows(request, result, rows);
   std::string table;

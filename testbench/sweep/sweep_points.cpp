@@ -26,9 +26,11 @@ bool is_audited(const std::string& id, const SweepFile& file) {
 }
 
 /// What the firmware sees of a scene: the host's image of it, for a firmware that all scenes share, and light
-/// from outside, which the layout holds.
+/// from outside, which the layout holds. All textures are in it, whatever a point's firmware does with them.
 std::string scene_digest(const Scene& scene) {
-  const MonoImage image = make_normal_mono_image(scene, cn::kStripLanes, path_tracer::ProgramConfig());
+  path_tracer::ProgramConfig program;
+  program.folds_constant_textures = false;
+  const MonoImage image = make_normal_mono_image(scene, cn::kStripLanes, program);
   std::string seen(reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size());
   if (image.layout.features.environment) {
     const cn::vec3<double>& outside = image.layout.environment;

@@ -21,7 +21,7 @@ struct Skip {
   void (*switch_off)(path_tracer::ProgramConfig& program);
   /// Whether the image without the skip is the same to the bit; otherwise to rounding.
   bool is_exact;
-  SkipCount (*count)(const path_tracer::RunCounts& counts);  ///< null: nothing counts it
+  SkipCount (*count)(const RenderResult& result);  ///< null: nothing counts it
 };
 
 /// The one list of skips.

@@ -201,7 +201,7 @@ TEST_F(Textures, DecodeEveryCodeOfSrgbAndAddNoLight) {
     PerPe<double> codes = per_pe<double>();
     for (int pe = 0; pe < num_pes(); ++pe) codes[std::size_t(pe)] = std::min(first + pe, 255);
     PerPe<double> linear = per_pe<double>();
-    run([&] { test_support::store(linear, path_tracer::texture_detail::linear_of_srgb(load(codes))); });
+    run([&] { test_support::store(linear, path_tracer::linear_of_srgb(load(codes))); });
     for (std::size_t pe = 0; pe < codes.size(); ++pe) {
       const double expected = testbench::linear_of_srgb(std::uint8_t(codes[pe]));
       EXPECT_NEAR(linear[pe], expected, 2.2e-7 * expected) << codes[pe];

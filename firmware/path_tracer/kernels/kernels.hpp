@@ -3,6 +3,7 @@
 #include "firmware/cn/language/kernel.hpp"
 #include "firmware/cn/simd/level.hpp"
 #include "firmware/path_tracer/kernels/traversal_kernels.hpp"
+#include "firmware/path_tracer/materials/lobe_use.hpp"
 #include "firmware/path_tracer/prefilter/prefilter.hpp"
 #include "firmware/path_tracer/prefilter/search_tree.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
@@ -101,7 +102,8 @@ struct ShadeArguments : ScatterArguments {
   const SunRecord* suns = nullptr;
   int sun_count = 0;
   PolyPointer<TextureLookUp> look_ups;
-  LaneMask* passes = nullptr;  ///< of scenes with coverage: PEs whose segment goes straight on
+  LaneMask* passes = nullptr;   ///< of scenes with coverage: PEs whose segment goes straight on
+  LobeUse* lobe_use = nullptr;  ///< empty before the run
 };
 
 /// Intersection stage, shadow rays: direct light if the ray hit its light; the ray's rest if it hit a surface

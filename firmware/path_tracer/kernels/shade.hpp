@@ -6,6 +6,7 @@
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/textures.hpp"
 #include "firmware/path_tracer/materials/absorption.hpp"
+#include "firmware/path_tracer/materials/observe_lobes.hpp"
 #include "firmware/path_tracer/materials/sample_bsdf.hpp"
 #include "firmware/path_tracer/sampling/light_sampling.hpp"
 #include "firmware/path_tracer/sampling/light_shapes.hpp"
@@ -397,6 +398,7 @@ inline void shade(const ShadeArguments& arguments) {
   continue_at(arguments, vertex, scatters);
   if (has_coverage) pass_on(arguments, passes, arrived);
   if (arguments.casts_shadow_rays) aim(arguments, vertex, scatters);
+  observe_lobes(bsdf, front, scatters, *arguments.lobe_use);
 }
 
 }  // namespace path_tracer

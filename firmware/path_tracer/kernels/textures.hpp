@@ -3,6 +3,7 @@
 #include "firmware/path_tracer/kernels/kernels.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/materials/material.hpp"
+#include "firmware/path_tracer/records/texel_value.hpp"
 
 /// Textures: which texels a hit needs, and what they show. Testbench and tests have the same in plain C++
 /// (testbench/texture/sample.hpp).
@@ -46,21 +47,6 @@ inline TexelPlace wrap(const poly<double>& place, const poly<double>& size, cons
 
 inline poly<double> code_of(const poly<std::uint32_t>& footprint, int texel) {
   return cn::convert<double>((footprint >> (8 * texel)) & poly<std::uint32_t>(0xffu));
-}
-
-/// Linear value in [0, 1] of a code of the sRGB transfer curve (IEC 61966-2-1). Its power 2.4 is a polynomial
-/// of the square root, fitted for the least relative error at all codes, then scaled so that no code shows
-/// more than its value, which would add light. Relative error: 2.2e-7.
-inline poly<double> linear_of_srgb(const poly<double>& code) {
-  constexpr double kLastOfLine = 10.0;
-  const poly<double> root = cn::sqrt(code * (1.0 / (255.0 * 1.055)) + 0.055 / 1.055);
-  constexpr double kPower[] = {7.085407525661334e-05, -0.0012565798546192415, 0.01002360980055449,
-                               -0.049690995429022576, 0.2085089705424304,     0.9098770613347521,
-                               -0.0896015715319457,   0.012068650161608033};
-  constexpr int kDegree = int{sizeof(kPower) / sizeof(kPower[0])} - 1;
-  poly<double> curve = kPower[kDegree];
-  for (int i = kDegree - 1; i >= 0; --i) curve = curve * root + kPower[i];
-  return cn::select(code > kLastOfLine, curve, code * (1.0 / (255.0 * 12.92)));
 }
 
 inline poly<double> mix(const poly<double>& a, const poly<double>& b, const poly<double>& share_of_b) {
@@ -124,13 +110,11 @@ class TexturesAtHit {
   }
 
   /// The factor of a slot that is_colour().
-  Rgb colour(TextureSlot slot) const { return three_channels(slot, texture_detail::linear_of_srgb); }
+  Rgb colour(TextureSlot slot) const { return three_channels(slot, linear_of_srgb<poly<double>>); }
   /// The three channels of another slot, in [0, 1]; 1 where the triangle has no such texture.
-  Rgb linear(TextureSlot slot) const { return three_channels(slot, value_of_code); }
+  Rgb linear(TextureSlot slot) const { return three_channels(slot, value_of_code<poly<double>>); }
 
  private:
-  static poly<double> value_of_code(const poly<double>& code) { return code * (1.0 / 255.0); }
-
   template <class Value>
   Rgb three_channels(TextureSlot slot, const Value& value) const {
     const poly<double> one = 1.0;
@@ -148,7 +132,7 @@ class TexturesAtHit {
     if (!sizes_.has_texture(slot)) return 1.0;
     const auto footprint = tail<ChannelFootprint>(look_up_of(slot)).get(part);
     const auto keep_code = [](const poly<double>& code) { return code; };
-    const poly<double> value = texture_detail::filter(footprint, shares(slot), keep_code) * (1.0 / 255.0);
+    const poly<double> value = value_of_code(texture_detail::filter(footprint, shares(slot), keep_code));
     return cn::select(has_texture(slot), value, poly<double>(1.0));
   }
   PolyPointer<TextureLookUp> look_up_of(TextureSlot slot) const {

@@ -93,7 +93,9 @@ struct ProgramConfig {
   Sampler sampler = Sampler::philox;
   LightSampling light_sampling = LightSampling::area;
   Estimator estimator = Estimator::per_lobe;
-  int light_candidates = 1;        ///< lights of which a vertex takes one by its estimated effect
+  int light_candidates = 1;  ///< lights of which a vertex takes one by its estimated effect
+  /// A texture whose texels are all equal is a factor of its material, which nobody looks up.
+  bool folds_constant_textures = true;
   int built_for = kBuiltForScene;  ///< a row of kBuiltForTable: the scene alone, or with more features
   Shading shading = Shading::present_lobes;
   std::uint64_t seed = 1;

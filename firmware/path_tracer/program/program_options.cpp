@@ -105,6 +105,13 @@ void write_empty_blocks(ProgramConfig& config, const OptionValue& value) {
   config.skips_empty_blocks = std::get<std::string>(value) == "skip";
 }
 
+OptionValue read_constant_textures(const ProgramConfig& config) {
+  return std::string(config.folds_constant_textures ? "factor" : "look_up");
+}
+void write_constant_textures(ProgramConfig& config, const OptionValue& value) {
+  config.folds_constant_textures = std::get<std::string>(value) == "factor";
+}
+
 Names built_for_names() {
   Names names;
   for (const ExtraFeature& feature : kBuiltForTable) names.emplace_back(feature.name);
@@ -142,6 +149,9 @@ Options bins() {
           {"empty_blocks", "-", std::string("skip"), Names{"skip", "process"},
            "blocks of slots without a path: left out, or processed like the others", &read_empty_blocks,
            &write_empty_blocks},
+          {"constant_textures", "-", std::string("factor"), Names{"factor", "look_up"},
+           "textures whose texels are all equal: factors of their materials, or looked up like others",
+           &read_constant_textures, &write_constant_textures},
           {"built_for", "-", std::string(kBuiltForTable[kBuiltForScene].name), built_for_names(),
            "what the firmware is built for: the features of its scene, which pays for nothing else, with one "
            "more, "

@@ -43,6 +43,15 @@ struct TraversalCounts {
   void merge(const TraversalCounts& other);
 };
 
+/// How well a lobe filled the PEs that were given its instructions, in kernel `shade`.
+struct LobeCount {
+  std::uint64_t blocks = 0;        ///< for which the part of the kernel with the lobe was issued
+  std::uint64_t issued_lanes = 0;  ///< PEs of these blocks
+  std::uint64_t wanted_lanes = 0;  ///< of these, PEs at a hit whose material has the lobe
+
+  double simd_efficiency() const { return double(wanted_lanes) / double(issued_lanes); }
+};
+
 /// Counts of the firmware; the chip has its own.
 struct RunCounts {
   std::uint64_t paths = 0;
@@ -55,6 +64,7 @@ struct RunCounts {
   std::uint64_t steps = 0;
   std::vector<std::uint64_t> paths_by_segments;  ///< [s]: paths that ended with s segments
   PassCounts rays;                               ///< segments and shadow rays by pass
+  std::vector<LobeCount> lobes;                  ///< [i]: of lobe i of kLobeTable; empty in plain scenes
   TraversalCounts traversal;
 
   /// Adds the counts of a run beside this one, on another array or chip.

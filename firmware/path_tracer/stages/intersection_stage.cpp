@@ -237,7 +237,12 @@ LaneMask IntersectionStage::shade(const Loads& from, const ScatterArguments& arg
     shading.suns = context_.machine.read_mono(context_.layout.suns, std::size_t(shading.sun_count));
   shading.look_ups = from.look_ups;
   shading.passes = &passes;
+  LobeUse lobe_use;
+  shading.lobe_use = &lobe_use;
   context_.machine.run(context_.kernels.shade, shading, segments);
+  if (segments.any())
+    count_lobes(lobe_use, shading.features.lobes, shading.skips_absent_lobes, context_.machine.num_pes(),
+                context_.counts.lobes);
   return passes;
 }
 

@@ -42,7 +42,7 @@ std::string measure_run(const Scene& scene, const RenderOptions& options) {
             {"sram_bytes", result.chip->poly_sram.peak_bytes},
             {"image_sha256", result.film.sha256()}};
   for (const Skip& skip : skip_table()) {
-    const SkipCount count = skip.count == nullptr ? SkipCount{} : skip.count(result.counts);
+    const SkipCount count = skip.count == nullptr ? SkipCount{} : skip.count(result);
     json["counts"].push_back({count.skipped, count.all});
   }
   return json.dump();
@@ -71,14 +71,14 @@ const char* image_text(const Skip& skip, const Json& with, const Json& without) 
 
 void print_row(const std::string& name, const std::string& off_by, const std::string& fired,
                const Json& run) {
-  std::printf("%-38s %-24s %18s %12llu %8.2f %6d", name.c_str(), off_by.c_str(), fired.c_str(),
+  std::printf("%-38s %-27s %18s %12llu %8.2f %6d", name.c_str(), off_by.c_str(), fired.c_str(),
               run["cycles"].get<unsigned long long>(), run["pio_bytes"].get<double>() / 1e6,
               run["sram_bytes"].get<int>());
 }
 
 void print_table(const std::vector<Json>& results) {
   const Json& with = results.front();
-  std::printf("%-38s %-24s %18s %12s %8s %6s %7s  %s\n", "what is skipped", "switched off by", "fired",
+  std::printf("%-38s %-27s %18s %12s %8s %6s %7s  %s\n", "what is skipped", "switched off by", "fired",
               "cycles", "PIO MB", "SRAM", "saves", "image");
   print_row("all of these", "", "", with);
   std::printf("\n");

@@ -131,13 +131,14 @@ TEST(ShadingBins, TheChipFindsWhatTheNativeMachineFindsWithoutHazards) {
 
 TEST(ShadingBins, KindsAreToldApartByLobesAndByTextures) {
   const Scene scene = two_textures();
-  const std::vector<std::int32_t> by_lobes = shading_kinds(scene, Shading::material_bins);
-  const std::vector<std::int32_t> by_textures = shading_kinds(scene, Shading::texture_bins);
+  const std::vector<std::int32_t> by_lobes = shading_kinds(scene, scene.materials, Shading::material_bins);
+  const std::vector<std::int32_t> by_textures = shading_kinds(scene, scene.materials, Shading::texture_bins);
   const std::size_t last = scene.materials.size() - 1;
   EXPECT_EQ(by_lobes[last], by_lobes[last - 1]);
   EXPECT_NE(by_textures[last], by_textures[last - 1]);
-  const std::vector<std::int32_t> of_many = shading_kinds(many_materials(), Shading::material_bins);
-  const std::size_t metal_at = many_materials().materials.size() - 3;
+  const Scene many = many_materials();
+  const std::vector<std::int32_t> of_many = shading_kinds(many, many.materials, Shading::material_bins);
+  const std::size_t metal_at = many.materials.size() - 3;
   EXPECT_NE(of_many[metal_at], of_many[metal_at + 1]);
   EXPECT_NE(of_many[metal_at], of_many[metal_at + 2]);
 }

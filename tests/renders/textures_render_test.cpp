@@ -217,7 +217,8 @@ TEST_F(TexturedRenders, WhiteTexturesOfSingleChannelsChangeNoBit) {
     scene.materials[i].textures.reflectance = {};
     bare.materials[i].textures = {};
   }
-  const RenderOptions options = options_for(Program::full, Traversal::refill, 1);
+  RenderOptions options = options_for(Program::full, Traversal::refill, 1);
+  options.program.folds_constant_textures = false;
   const path_tracer::TextureSlots slots = testbench::features_of(scene, options.program).textures;
   EXPECT_FALSE(slots.has(TextureSlot::reflectance));
   EXPECT_TRUE(slots.has(TextureSlot::metallic) && slots.has(TextureSlot::roughness) &&

@@ -232,6 +232,7 @@ testbench::Texture random_texture(int width, int height, int channels, testbench
 void add_textured_square(testbench::Scene& scene, const std::array<glm::dvec3, 4>& corners,
                          std::int32_t material) {
   const glm::dvec2 place[4] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  scene.corners.coordinates[0].resize(scene.triangles.size());  // of triangles without a texture
   for (const auto& [b, c] : {std::pair{1, 2}, std::pair{2, 3}}) {
     scene.triangles.push_back({{corners[0], corners[std::size_t(b)], corners[std::size_t(c)]}, material});
     scene.corners.coordinates[0].push_back({place[0], place[b], place[c]});

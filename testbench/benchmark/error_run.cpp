@@ -35,6 +35,7 @@ class GrowingRender {
         film_(scene.film, film_scale(scene), options.film_sums) {}
 
   void add(const path_tracer::Work& work) {
+    if (!options_.image) options_.image = make_image(scene_, options_);
     const PartialRender part = render_parts(scene_, options_, machine_, {work}).front();
     film_.merge(part.film);
     cpu_seconds_ += part.cpu_seconds;
@@ -49,7 +50,7 @@ class GrowingRender {
 
  private:
   const Scene& scene_;
-  const RenderOptions& options_;
+  RenderOptions options_;
   MachineKind machine_;
   Film film_;
   double cpu_seconds_ = 0;

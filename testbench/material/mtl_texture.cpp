@@ -4,6 +4,7 @@
 
 #include "testbench/files/text_lines.hpp"
 #include "testbench/system/error.hpp"
+#include "testbench/texture/height_map.hpp"
 
 namespace testbench {
 namespace {
@@ -121,6 +122,24 @@ bool is_grey(const Image& image) {
   return true;
 }
 
+/// Whether all texels have the same grey.
+bool is_of_one_height(const Image& image) {
+  const auto channels = std::size_t(image.channels);
+  for (std::size_t i = 0; i < image.texels.size(); i += channels)
+    if (image.texels[i] != image.texels[0]) return false;
+  return true;
+}
+
+/// Adds the normal texture of a height map to the store. @param heights index of the map there
+std::int32_t add_normals_of(const MtlTexture& texture, std::int32_t heights, TextureStore& store) {
+  const HeightMap map{0, texture.bump_multiplier, texture.reference.wrap_u, texture.reference.wrap_v};
+  const bool is_clamped = map.wrap_u == TextureWrap::clamp_to_edge;
+  const std::string name = store.at(heights).name + ", heights times " + std::to_string(map.white_texels) +
+                           (is_clamped ? ", clamped" : "");
+  const Image image = store.at(heights).image;  // the store's own moves when it grows
+  return store.index_of(name, TexelEncoding::linear, [&] { return normals_of_heights(image, map); });
+}
+
 /// A texture of roughness or metallic makes a material one of Pr and Pm, not of Ks and Ns.
 void set_factors(const MtlTexture& texture, Material& material) {
   if (texture.slot != &MaterialTextures::roughness && texture.slot != &MaterialTextures::metallic) return;
@@ -163,18 +182,20 @@ void load_mtl_textures(const std::vector<MtlTexture>& textures, const MtlTexture
     }
     if (texture.slot == &MaterialTextures::emission && material.emission == glm::dvec3(0.0))
       notes.add("map_Ke without Ke shows nothing", texture.where);
-    const std::int32_t index = files.store.index_of_file(*file, texture.encoding);
-    const Image& image = files.store.at(index).image;
-    if (texture.may_be_height && is_grey(image)) {
-      notes.add("a height map (bump) is left out", texture.where + ": " + texture.file);
+    std::int32_t index = files.store.index_of_file(*file, texture.encoding);
+    const bool is_height_map = texture.may_be_height && is_grey(files.store.at(index).image);
+    if (is_height_map && is_of_one_height(files.store.at(index).image)) {
+      notes.add("a height map (bump) of one height shows nothing", texture.where + ": " + texture.file);
       continue;
     }
+    if (is_height_map) index = add_normals_of(texture, index, files.store);
     TextureReference& reference = material.textures.*texture.slot;
     reference = texture.reference;
     reference.texture = index;
-    reference.channel = channel_of(texture, image);
+    reference.channel = channel_of(texture, files.store.at(index).image);
     set_factors(texture, material);
-    if (texture.slot == &MaterialTextures::normal) material.normal_scale = texture.bump_multiplier;
+    if (texture.slot == &MaterialTextures::normal)
+      material.normal_scale = is_height_map ? 1.0 : texture.bump_multiplier;
     if (texture.slot == &MaterialTextures::alpha) material.alpha_mode = AlphaMode::blend;
   }
 }

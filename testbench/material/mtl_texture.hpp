@@ -17,12 +17,12 @@ namespace testbench {
 struct MtlTexture {
   TextureReference MaterialTextures::*slot = nullptr;
   TexelEncoding encoding = TexelEncoding::linear;
-  bool may_be_height = false;  ///< whether a grey image is a height map, not normals
-  std::string file;            ///< as the MTL file names it
-  std::string where;           ///< file, line and keyword of the MTL file
-  TextureReference reference;  ///< its options, without an image
-  std::optional<int> channel;  ///< of -imfchan
-  double bump_multiplier = 1.0;
+  bool may_be_height = false;          ///< whether a grey image is a height map, not normals
+  std::string file;                    ///< as the MTL file names it
+  std::string where;                   ///< file, line and keyword of the MTL file
+  TextureReference reference;          ///< its options, without an image
+  std::optional<int> channel;          ///< of -imfchan
+  double bump_multiplier = 1.0;        ///< of -bm
   double Material::*factor = nullptr;  ///< what is 1 with the texture, because the MTL file has no number
 };
 
@@ -40,8 +40,9 @@ struct MtlTextureFiles {
   bool must_exist = false;  ///< whether a missing file is an error; otherwise it is noted
 };
 
-/// Reads the textures of a material into `files.store` and `material.textures`. What is missing or a height
-/// map is noted. Throws InputError for a file out of reach or one that decode_image() refuses.
+/// Reads the textures of a material into `files.store` and `material.textures`. A height map becomes a normal
+/// texture. What is missing or has one height is noted. Throws InputError for a file out of reach or one that
+/// decode_image() refuses.
 void load_mtl_textures(const std::vector<MtlTexture>& textures, const MtlTextureFiles& files,
                        Material& material, Notes& notes);
 

@@ -6,7 +6,6 @@
 #include "testbench/mono_image/environment_cells.hpp"
 #include "testbench/mono_image/light_candidates.hpp"
 #include "testbench/mono_image/light_choice.hpp"
-#include "testbench/mono_image/light_pilot.hpp"
 #include "testbench/mono_image/to_record.hpp"
 #include "testbench/system/error.hpp"
 
@@ -66,28 +65,48 @@ std::vector<float> pdf_of_cells(const EnvironmentCells& cells, const LightChoice
   return pdf;
 }
 
+/// Everything that shadow rays are aimed at. The environment's cells come last.
+struct AllEmitters {
+  std::vector<Emitter> emitters;
+  EnvironmentCells cells;
+  std::size_t first_cell = 0;  ///< among the emitters
+};
+
+AllEmitters all_emitters(const Scene& scene, const std::vector<std::int32_t>& faces,
+                         path_tracer::LightSampling sampling, double radius) {
+  AllEmitters all;
+  all.emitters = surface_emitters(scene, faces, sampling);
+  append(all.emitters, light_emitters(scene, radius));
+  all.cells = environment_cells(scene, radius);
+  all.first_cell = all.emitters.size();
+  append(all.emitters, all.cells.emitters);
+  require_light(scene, !all.emitters.empty());
+  return all;
+}
+
 }  // namespace
 
-Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
-                   path_tracer::LightSampling sampling) {
+LightSurvey survey_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
+                          path_tracer::LightSampling sampling) {
   const double radius = surroundings_of(scene).radius;
-  std::vector<Emitter> emitters = surface_emitters(scene, faces, sampling);
-  append(emitters, light_emitters(scene, radius));
-  const EnvironmentCells cells = environment_cells(scene, radius);
-  const std::size_t first_cell = emitters.size();
-  append(emitters, cells.emitters);
-  require_light(scene, !emitters.empty());
+  return {sampling, light_weights(scene, all_emitters(scene, faces, sampling, radius).emitters)};
+}
 
+Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
+                   path_tracer::LightSampling sampling, const LightSurvey* survey) {
+  const double radius = surroundings_of(scene).radius;
+  const AllEmitters all = all_emitters(scene, faces, sampling, radius);
   Lights lights;
   lights.suns = suns_of(scene);
-  if (emitters.empty()) return lights;
-  const LightWeights weights = light_weights(scene, emitters);
+  if (all.emitters.empty()) return lights;
+  const bool is_surveyed = survey != nullptr && survey->sampling == sampling;
+  const LightWeights weights = is_surveyed ? survey->weights : light_weights(scene, all.emitters);
   const LightChoice choice = choose_by(weights.choice);
-  add_records(emitters, choice, lights);
-  lights.candidates = light_candidates(emitters, choice, weights.visibility, radius);
-  if (!cells.emitters.empty())
+  add_records(all.emitters, choice, lights);
+  lights.candidates = light_candidates(all.emitters, choice, weights.visibility, radius);
+  if (!all.cells.emitters.empty())
     lights.environment_texels =
-        environment_texels(scene.environment, cells, pdf_of_cells(cells, choice, first_cell));
+        environment_texels(scene.environment, all.cells, pdf_of_cells(all.cells, choice, all.first_cell));
   return lights;
 }
 

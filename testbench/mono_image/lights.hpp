@@ -6,6 +6,7 @@
 #include "firmware/path_tracer/program/program_config.hpp"
 #include "firmware/path_tracer/records/outside.hpp"
 #include "firmware/path_tracer/records/records.hpp"
+#include "testbench/mono_image/light_pilot.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
@@ -21,10 +22,23 @@ struct Lights {
   std::vector<path_tracer::SunRecord> suns;
 };
 
-/// The lights of a scene; none if an environment of one colour alone lights it.
+/// What the host's paths say about a scene's lights: a function of the scene alone, so several renders of it
+/// may share one.
+struct LightSurvey {
+  path_tracer::LightSampling sampling;
+  LightWeights weights;
+};
+
 /// @param faces of the scene's triangles
 /// @throws InputError for a scene without light
+LightSurvey survey_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
+                          path_tracer::LightSampling sampling);
+
+/// The lights of a scene; none if an environment of one colour alone lights it.
+/// @param faces of the scene's triangles
+/// @param survey of this scene, or null; one of another sampling is not used
+/// @throws InputError for a scene without light
 Lights make_lights(const Scene& scene, const std::vector<std::int32_t>& faces,
-                   path_tracer::LightSampling sampling);
+                   path_tracer::LightSampling sampling, const LightSurvey* survey);
 
 }  // namespace testbench

@@ -13,7 +13,6 @@
 #include "testbench/mono_image/constant_textures.hpp"
 #include "testbench/mono_image/coverage.hpp"
 #include "testbench/mono_image/faces.hpp"
-#include "testbench/mono_image/lights.hpp"
 #include "testbench/mono_image/material_records.hpp"
 #include "testbench/mono_image/scene_features.hpp"
 #include "testbench/mono_image/scene_layers.hpp"
@@ -243,6 +242,7 @@ void put_surfaces(MonoImage& image, const Triangles& triangles, const std::vecto
     put_material(image, i, material);
     if (has_normals) put_tail(image, i, sizes.normal, normal_record(triangles.scene, i));
     put_tail(image, i, sizes.tangent, tangent_record(triangles.scene, i));
+    put_tail(image, i, sizes.tangent_slope, tangent_slope_record(triangles.scene, i));
     path_tracer::AimRecord aim{std::numeric_limits<double>::infinity()};
     if (light_of[i] != path_tracer::kNoLight)
       aim.inverse_pdf = lights.records[std::size_t(light_of[i])].inverse_pdf;
@@ -276,12 +276,13 @@ void put_outside(MonoImage& image, const Environment& environment, const Lights&
 
 }  // namespace
 
-MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options) {
+MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options,
+                          const LightSurvey* survey) {
   const ShownMaterials shown = shown_materials(scene, options);
   path_tracer::ProgramConfig config = options;
   config.features = features_of(scene, shown.materials, options);
   const Triangles triangles(scene);
-  const Lights lights = make_lights(scene, triangles.faces, config.light_sampling);
+  const Lights lights = make_lights(scene, triangles.faces, config.light_sampling, survey);
   const double reach = reach_of(scene);
   TreeImage tree;
   if (config.uses_tree()) tree = make_tree(triangles, reach, config);
@@ -324,8 +325,15 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   return image;
 }
 
-MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config) {
-  return make_mono_image(normalised(scene), num_pes, config);
+MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config,
+                                 const LightSurvey* survey) {
+  return make_mono_image(normalised(scene), num_pes, config, survey);
+}
+
+LightSurvey make_normal_light_survey(const Scene& scene, path_tracer::LightSampling sampling) {
+  const Scene normal = normalised(scene);
+  const CoincidentTriangles coincident = find_coincident_triangles(normal.triangles);
+  return survey_lights(normal, number_faces(normal.triangles, coincident), sampling);
 }
 
 }  // namespace testbench

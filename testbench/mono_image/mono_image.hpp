@@ -5,6 +5,7 @@
 
 #include "firmware/path_tracer/program/layout.hpp"
 #include "testbench/mono_image/constant_textures.hpp"
+#include "testbench/mono_image/lights.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
@@ -25,10 +26,16 @@ struct MonoImage {
 
 /// Lays out a scene for the firmware, lengths in the scene's unit. Throws InputError for a scene without
 /// light.
-MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options);
+/// @param survey of the same scene and unit, so that the host's paths are not traced again; may be null
+MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options,
+                          const LightSurvey* survey = nullptr);
 
 /// The same with lengths in the scene's normal unit (testbench/scene/normalise.hpp), so that scenes of any
 /// size are rendered alike. Every render uses this one.
-MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config);
+MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& config,
+                                 const LightSurvey* survey = nullptr);
+
+/// The survey of a scene for its normal unit. Throws InputError for a scene without light.
+LightSurvey make_normal_light_survey(const Scene& scene, path_tracer::LightSampling sampling);
 
 }  // namespace testbench

@@ -9,6 +9,7 @@
 #include "testbench/mono_image/material_records.hpp"
 #include "testbench/mono_image/mean_emission.hpp"
 #include "testbench/mono_image/shading_kinds.hpp"
+#include "testbench/mono_image/tangents.hpp"
 #include "testbench/mono_image/texture_images.hpp"
 
 namespace testbench {
@@ -110,6 +111,7 @@ path_tracer::Features features_of(const Scene& scene, const std::vector<Material
       std::all_of(materials.begin(), materials.end(), shows_roughness_with_metallic);
   features.lights = light_kinds(scene);
   features.normals = !scene.corners.normals.empty();
+  features.tangents = has_varying_tangents(scene);
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   path_tracer::kBuiltForTable.at(std::size_t(config.built_for)).add(features);
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();

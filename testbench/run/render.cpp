@@ -31,7 +31,7 @@ void require_memory_for_triangles(const Scene& scene, const RenderOptions& optio
 MonoImage make_checked_image(const Scene& scene, const RenderOptions& options) {
   path_tracer::validate(options.program);
   require_memory_for_triangles(scene, options);
-  return make_normal_mono_image(scene, options.chip.chip.pes, options.program);
+  return make_normal_mono_image(scene, options.chip.chip.pes, options.program, options.light_survey.get());
 }
 
 /// A machine without a clock; a recording one where a stream is wanted.

@@ -30,6 +30,8 @@ struct RenderOptions {
   /// The paths to trace, if not those of `work`; no sample of a pixel twice.
   std::vector<path_tracer::CameraSampleRecord> camera_samples = {};
   std::shared_ptr<const MonoImage> image = {};  ///< make_image() of the scene, for several renders of it
+  /// make_normal_light_survey() of the scene, for renders of it by several programs.
+  std::shared_ptr<const LightSurvey> light_survey = {};
   model::TimingStyle timing = model::TimingStyle::loosely_timed;
   cn::Level level = cn::widest_level();
   FilmSums film_sums = FilmSums::means_and_variances;

@@ -58,6 +58,31 @@ std::optional<CornerNormals> corner_normals(const glm::dvec3 (&vertex)[3], const
   return normals;
 }
 
+std::optional<CornerTangents> corner_tangents(const glm::dvec3 (&vertex)[3], const CornerNormals& normals,
+                                              const CornerTangents& given) {
+  const glm::dvec3 of_plane =
+      glm::cross(unit_or_zero(vertex[1] - vertex[0]), unit_or_zero(vertex[2] - vertex[0]));
+  double facing = 0.0;
+  for (const glm::dvec3& normal : normals) facing += glm::dot(unit_or_zero(normal), of_plane);
+  CornerTangents tangents;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 direction = unit_or_zero(glm::dvec3(given[i]));
+    const bool has_side = given[i].w < 0.0 || given[i].w > 0.0;
+    if (direction == glm::dvec3(0.0) || !has_side || (given[i].w < 0.0) != (given[0].w < 0.0))
+      return std::nullopt;
+    tangents[i] = glm::dvec4(direction, (given[i].w < 0.0) == (facing < 0.0) ? 1.0 : -1.0);
+  }
+  return tangents;
+}
+
+CornerTangents moved_tangents(const CornerTangents& tangents, const glm::dmat3& transform) {
+  const double side = glm::determinant(transform) < 0.0 ? -1.0 : 1.0;
+  CornerTangents moved;
+  for (std::size_t i = 0; i < 3; ++i)
+    moved[i] = glm::dvec4(unit_or_zero(transform * glm::dvec3(tangents[i])), side * tangents[i].w);
+  return moved;
+}
+
 CornerCoordinates corner_coordinates(CornerCoordinates given) {
   for (glm::dvec2& of_corner : given)
     for (int axis = 0; axis < 2; ++axis)
@@ -80,6 +105,7 @@ void set_corner_attributes(CornerAttributes& attributes, std::size_t index,
   set_entry(attributes.normals, index, of_one.normals);
   for (std::size_t set = 0; set < attributes.coordinates.size(); ++set)
     set_entry(attributes.coordinates[set], index, of_one.coordinates[set]);
+  set_entry(attributes.tangents, index, of_one.tangents);
 }
 
 TriangleAttributes corner_attributes_of(const CornerAttributes& attributes, std::size_t index) {
@@ -87,6 +113,7 @@ TriangleAttributes corner_attributes_of(const CornerAttributes& attributes, std:
   of_one.normals = entry_of(attributes.normals, index);
   for (std::size_t set = 0; set < attributes.coordinates.size(); ++set)
     of_one.coordinates[set] = entry_of(attributes.coordinates[set], index);
+  of_one.tangents = entry_of(attributes.tangents, index);
   return of_one;
 }
 
@@ -94,6 +121,7 @@ void complete_corner_attributes(CornerAttributes& attributes, std::size_t triang
   if (!attributes.normals.empty()) attributes.normals.resize(triangles, CornerNormals{});
   for (std::vector<CornerCoordinates>& of_set : attributes.coordinates)
     if (!of_set.empty()) of_set.resize(triangles, CornerCoordinates{});
+  if (!attributes.tangents.empty()) attributes.tangents.resize(triangles, CornerTangents{});
 }
 
 void reorder_corner_attributes(CornerAttributes& attributes, const std::vector<std::size_t>& order) {
@@ -105,11 +133,13 @@ void reorder_corner_attributes(CornerAttributes& attributes, const std::vector<s
   };
   reorder(attributes.normals);
   for (auto& coordinates : attributes.coordinates) reorder(coordinates);
+  reorder(attributes.tangents);
 }
 
 void remove_corner_attributes(CornerAttributes& attributes, const std::vector<bool>& is_removed) {
   remove_entries(attributes.normals, is_removed);
   for (std::vector<CornerCoordinates>& of_set : attributes.coordinates) remove_entries(of_set, is_removed);
+  remove_entries(attributes.tangents, is_removed);
 }
 
 }  // namespace testbench

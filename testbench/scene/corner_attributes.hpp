@@ -12,6 +12,7 @@ namespace testbench {
 
 using CornerNormals = std::array<glm::dvec3, 3>;
 using CornerCoordinates = std::array<glm::dvec2, 3>;
+using CornerTangents = std::array<glm::dvec4, 3>;
 
 /// What a list of triangles has at their corners. A list is empty if no triangle has such, otherwise it has
 /// an entry for each triangle.
@@ -22,13 +23,21 @@ struct CornerAttributes {
   /// Texture coordinates by set, as TextureReference has them; zeros for a triangle without.
   std::array<std::vector<CornerCoordinates>, kTextureCoordinateSets> coordinates;
 
-  bool is_empty() const { return normals.empty() && coordinates[0].empty() && coordinates[1].empty(); }
+  /// Tangents that a file gives (glTF 2.0, section 3.7.2.1): x, y, z of unit length, along which a normal
+  /// texture's columns grow; w, +1 or -1, turns normal x tangent upwards in the image. Zeros for a triangle
+  /// without: they follow from its texture coordinates.
+  std::vector<CornerTangents> tangents;
+
+  bool is_empty() const {
+    return normals.empty() && coordinates[0].empty() && coordinates[1].empty() && tangents.empty();
+  }
 };
 
 /// The same of one triangle.
 struct TriangleAttributes {
   std::optional<CornerNormals> normals;
   std::array<std::optional<CornerCoordinates>, kTextureCoordinateSets> coordinates;
+  std::optional<CornerTangents> tangents;
 };
 
 /// The vector with a length of 1, also where its square would vanish or overflow; zeros for what is no
@@ -39,6 +48,15 @@ glm::dvec3 unit_or_zero(const glm::dvec3& vector);
 /// or if all lie within 1e-4 radians of the normal of its plane, so that nothing is to be seen of them.
 /// @param vertex of the triangle, counter-clockwise from its front
 std::optional<CornerNormals> corner_normals(const glm::dvec3 (&vertex)[3], const CornerNormals& given);
+
+/// The tangents for a triangle: of unit length, with the side of its front; std::nullopt if one is no
+/// direction, or if the corners do not agree on the side.
+/// @param vertex of the triangle, counter-clockwise from its front @param normals that the tangents go with
+std::optional<CornerTangents> corner_tangents(const glm::dvec3 (&vertex)[3], const CornerNormals& normals,
+                                              const CornerTangents& given);
+
+/// The tangents in a mesh that is moved. @param transform of points
+CornerTangents moved_tangents(const CornerTangents& tangents, const glm::dmat3& transform);
 
 /// The coordinates, with 0 in place of what is no finite number.
 CornerCoordinates corner_coordinates(CornerCoordinates given);

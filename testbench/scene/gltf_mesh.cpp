@@ -75,7 +75,9 @@ class Collector {
     const std::vector<glm::dmat4> instances =
         joints.empty() ? read_gltf_instances(document_, node) : std::vector<glm::dmat4>{glm::dmat4(1.0)};
     for (; place.primitive < of_mesh["primitives"].size(); ++place.primitive) {
-      place.is_textured = has_texture(material(material_index(place)));
+      const Material& of_primitive = material(material_index(place));
+      place.is_textured = has_texture(of_primitive);
+      place.has_normal_texture = bool(of_primitive.textures.normal);
       const std::optional<GltfPrimitive> primitive = read_gltf_primitive(document_, place);
       if (!primitive) {
         ++points_and_lines_;
@@ -128,7 +130,7 @@ class Collector {
       positions.emplace_back(of_vertex(i) * glm::dvec4(primitive.positions[i], 1.0));
     const std::size_t plain = material_index(place);
     const bool emits_from_both_sides = material(plain).is_side_of_light;
-    const std::vector<glm::dvec3> normals = moved_normals(primitive, of_vertex);
+    const PrimitiveFrames frames = moved_frames(primitive, of_vertex);
     // A transform that mirrors reverses the winding of triangles.
     const bool is_mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
     for (const auto& [a, b, c] : primitive.triangles) {
@@ -140,28 +142,40 @@ class Collector {
       if (!index) continue;
       triangle.material = *index;
       if (add_triangle(triangle, emits_from_both_sides, where))
-        add_corners(primitive, normals, corners, triangle);
+        add_corners(primitive, frames, corners, triangle);
     }
   }
 
-  /// The normals of a primitive's vertices in the scene's coordinates. @param of_vertex returns the transform
-  template <class OfVertex>
-  static std::vector<glm::dvec3> moved_normals(const GltfPrimitive& primitive, const OfVertex& of_vertex) {
+  /// Normals and tangents of a primitive's vertices in the scene's coordinates; each may be empty.
+  struct PrimitiveFrames {
     std::vector<glm::dvec3> normals;
-    normals.reserve(primitive.normals.size());
+    std::vector<glm::dvec4> tangents;
+  };
+
+  /// @param of_vertex returns the transform
+  template <class OfVertex>
+  static PrimitiveFrames moved_frames(const GltfPrimitive& primitive, const OfVertex& of_vertex) {
+    PrimitiveFrames frames;
+    frames.normals.reserve(primitive.normals.size());
     for (std::uint32_t i = 0; i < primitive.normals.size(); ++i)
-      normals.push_back(normal_transform(glm::dmat3(of_vertex(i))) * primitive.normals[i]);
-    return normals;
+      frames.normals.push_back(normal_transform(glm::dmat3(of_vertex(i))) * primitive.normals[i]);
+    for (std::uint32_t i = 0; i < primitive.tangents.size(); ++i) {
+      const glm::dvec4& tangent = primitive.tangents[i];
+      frames.tangents.push_back(moved_tangents({tangent, tangent, tangent}, glm::dmat3(of_vertex(i)))[0]);
+    }
+    return frames;
   }
 
   /// Adds what the corners of the last triangle have.
-  void add_corners(const GltfPrimitive& primitive, const std::vector<glm::dvec3>& normals,
+  void add_corners(const GltfPrimitive& primitive, const PrimitiveFrames& frames,
                    const std::array<std::uint32_t, 3>& corners, const Triangle& triangle) {
     const auto of = [&corners](const auto& all) {
       return std::array{all[corners[0]], all[corners[1]], all[corners[2]]};
     };
     TriangleAttributes attributes;
-    if (!normals.empty()) attributes.normals = corner_normals(triangle.vertex, of(normals));
+    if (!frames.normals.empty()) attributes.normals = corner_normals(triangle.vertex, of(frames.normals));
+    if (!frames.tangents.empty())
+      attributes.tangents = corner_tangents(triangle.vertex, of(frames.normals), of(frames.tangents));
     for (std::size_t set = 0; set < primitive.coordinates.size(); ++set)
       if (!primitive.coordinates[set].empty())
         attributes.coordinates[set] = corner_coordinates(of(primitive.coordinates[set]));
@@ -264,6 +278,10 @@ class Collector {
     }
     for (std::optional<CornerCoordinates>& of_set : attributes.coordinates)
       if (of_set) std::swap((*of_set)[1], (*of_set)[2]);
+    if (attributes.tangents) {
+      for (glm::dvec4& tangent : *attributes.tangents) tangent.w = -tangent.w;
+      std::swap((*attributes.tangents)[1], (*attributes.tangents)[2]);
+    }
     return attributes;
   }
 

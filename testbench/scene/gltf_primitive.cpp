@@ -25,6 +25,8 @@ const GltfForm kColourTargetForm{
     {GltfComponent::f32}};
 const GltfForm kNormalForm{{"VEC3"}, {}, {GltfComponent::f32}};
 const GltfForm kQuantizedNormalForm{{"VEC3"}, {GltfComponent::i8, GltfComponent::i16}, {GltfComponent::f32}};
+const GltfForm kTangentForm{{"VEC4"}, {}, {GltfComponent::f32}};
+const GltfForm kQuantizedTangentForm{{"VEC4"}, {GltfComponent::i8, GltfComponent::i16}, {GltfComponent::f32}};
 const GltfForm kCoordinateForm{{"VEC2"}, {GltfComponent::u8, GltfComponent::u16}, {GltfComponent::f32}};
 const GltfForm kQuantizedCoordinateForm{
     {"VEC2"},
@@ -68,8 +70,7 @@ class PrimitiveReader {
     read_colours();
     read_normals();
     if (place_.is_textured) read_coordinates();
-    if (place_.is_textured && source_["attributes"].contains("TANGENT"))
-      document_.note("TANGENT is left out, tangents follow from texture coordinates", where_);
+    if (place_.has_normal_texture) read_tangents();
     if (place_.joints > 0) read_influences();
     read_triangles(mode);
     return std::move(result_);
@@ -175,6 +176,22 @@ class PrimitiveReader {
       for (std::size_t i = 0; i < vertices_; ++i)
         result_.coordinates[set].push_back(glm::make_vec2(numbers[i]));
     }
+  }
+
+  /// Without normals, tangents are to be ignored (glTF 2.0, section 3.7.2.1). Morph targets move them, but
+  /// not to the other side.
+  void read_tangents() {
+    GltfNumbers tangents = attribute("TANGENT", is_quantized_ ? kQuantizedTangentForm : kTangentForm);
+    if (tangents.width == 0) return;
+    if (result_.normals.empty())
+      return document_.note("TANGENT without NORMAL is left out, tangents follow from texture coordinates",
+                            where_);
+    GltfNumbers directions{3, {}};
+    for (std::size_t i = 0; i < vertices_; ++i)
+      directions.values.insert(directions.values.end(), tangents[i], tangents[i] + 3);
+    add_targets("TANGENT", is_quantized_ ? kQuantizedNormalForm : kNormalForm, directions);
+    for (std::size_t i = 0; i < vertices_; ++i)
+      result_.tangents.emplace_back(glm::make_vec3(directions[i]), tangents[i][3]);
   }
 
   void read_influences() {

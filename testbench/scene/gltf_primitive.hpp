@@ -22,6 +22,7 @@ struct GltfPrimitive {
   std::vector<glm::dvec4> colours;    ///< of vertices, linear RGB and alpha; may be empty
   std::vector<glm::dvec3> normals;    ///< the same, of any length; may be empty
   std::array<std::vector<glm::dvec2>, kTextureCoordinateSets> coordinates;  ///< of textures; may be empty
+  std::vector<glm::dvec4> tangents;  ///< of vertices with normals, and their side; may be empty
   std::vector<std::vector<GltfInfluence>> influences;  ///< of vertices; empty unless joints were asked for
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
@@ -30,9 +31,10 @@ struct GltfPrimitive {
 struct GltfPrimitivePlace {
   std::size_t mesh;
   std::size_t primitive;
-  std::vector<double> weights;  ///< of the mesh's morph targets
-  std::size_t joints;           ///< of the skin; 0 for none
-  bool is_textured = false;     ///< whether texture coordinates are wanted
+  std::vector<double> weights;      ///< of the mesh's morph targets
+  std::size_t joints;               ///< of the skin; 0 for none
+  bool is_textured = false;         ///< whether texture coordinates are wanted
+  bool has_normal_texture = false;  ///< whether tangents are wanted
 };
 
 /// Reads a primitive of triangles, a strip or a fan; std::nullopt for points and lines, which are noted.

@@ -36,9 +36,11 @@ bool is_in_range(const Triangle& triangle) {
 void keep_used_textures(Scene& scene) {
   std::vector<std::int32_t> new_index(scene.textures.size(), kNoTexture);
   std::array<bool, kTextureCoordinateSets> is_used_set{};
+  bool has_normal_texture = false;
   std::vector<Texture> used;
   for (Material& material : scene.materials) {
     drop_idle_textures(material);
+    has_normal_texture = has_normal_texture || material.textures.normal;
     for_each_texture(material.textures, [&](TextureReference& reference) {
       if (!reference) return;
       is_used_set[std::size_t(reference.coordinate_set)] = true;
@@ -53,6 +55,7 @@ void keep_used_textures(Scene& scene) {
   scene.textures = std::move(used);
   for (std::size_t set = 0; set < is_used_set.size(); ++set)
     if (!is_used_set[set]) scene.corners.coordinates[set] = {};
+  if (!has_normal_texture) scene.corners.tangents = {};
 }
 
 std::size_t ColourMaterials::Hash::operator()(const glm::dvec4& colour) const {

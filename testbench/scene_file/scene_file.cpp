@@ -162,6 +162,7 @@ TriangleAttributes moved(TriangleAttributes attributes, const glm::dmat4& transf
   const glm::dmat3 of_normals = normal_transform(glm::dmat3(transform));
   if (attributes.normals)
     for (glm::dvec3& normal : *attributes.normals) normal = unit_or_zero(of_normals * normal);
+  if (attributes.tangents) attributes.tangents = moved_tangents(*attributes.tangents, glm::dmat3(transform));
   return attributes;
 }
 

@@ -7,10 +7,11 @@
 namespace testbench {
 
 Recording record_render(const Scene& scene, const RenderOptions& options) {
+  RenderOptions with_image = options;
+  with_image.image = make_image(scene, options);
   TimingStream stream;
-  RenderResult result = render_natively(scene, options, {}, &stream);
-  return {make_normal_mono_image(scene, options.chip.chip.pes, options.program), std::move(stream),
-          std::move(result)};
+  RenderResult result = render_natively(scene, with_image, {}, &stream);
+  return {*with_image.image, std::move(stream), std::move(result)};
 }
 
 RenderResult replay_on_chip(const Recording& recording, const RenderOptions& options) {

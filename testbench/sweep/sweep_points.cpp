@@ -95,8 +95,13 @@ SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
 }
 
 void Sweep::set_run(SweepPoint& point, const RunSettings& run) {
-  const LoadedScene& loaded = scene_of(run);
-  point.run = RenderPoint{{run.scene, run.options, false}, &loaded.scene};
+  LoadedScene& loaded = scene_of(run);
+  const path_tracer::LightSampling sampling = run.options.program.light_sampling;
+  std::shared_ptr<const LightSurvey>& survey = loaded.light_surveys[sampling];
+  if (!survey) survey = std::make_shared<const LightSurvey>(make_normal_light_survey(loaded.scene, sampling));
+  RenderOptions options = run.options;
+  options.light_survey = survey;
+  point.run = RenderPoint{{run.scene, options, false}, &loaded.scene};
   point.id = short_digest(all_inputs(run) + loaded.digest);
   point.stream = short_digest(stream_inputs(run) + loaded.digest);
 }
@@ -135,7 +140,7 @@ std::string Sweep::firmware_builds() const {
   return builds;
 }
 
-const Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
+Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
   std::unique_ptr<LoadedScene>& loaded = scenes_[run.scene + "\n" + run.size];
   if (!loaded) {
     if (run.scene.empty())

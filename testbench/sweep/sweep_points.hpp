@@ -48,6 +48,7 @@ class Sweep {
   struct LoadedScene {
     Scene scene;
     std::string digest;
+    std::map<path_tracer::LightSampling, std::shared_ptr<const LightSurvey>> light_surveys = {};
   };
 
   /// Loads the firmwares that the file names and checks every value of their options.
@@ -55,7 +56,7 @@ class Sweep {
   SweepPoint make_point(const SweepFile& file, std::uint64_t number);
   void set_run(SweepPoint& point, const RunSettings& run);
   static void set_run(SweepPoint& point, PlugInSettings&& run);
-  const LoadedScene& scene_of(const RunSettings& run);
+  LoadedScene& scene_of(const RunSettings& run);
 
   std::vector<std::string> keys_;
   std::vector<std::vector<std::string>> axes_;

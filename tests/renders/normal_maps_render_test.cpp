@@ -153,6 +153,57 @@ TEST(NormalMaps, CoordinatesWithoutAnAreaLeaveTheSurfaceFlat) {
   expect_equal(film_of(square.scene), film_of(square.with_normals({0, 0, 1})), kRounding);
 }
 
+/// Tangents of a file go before those of texture coordinates: x along the tangent, y along normal x tangent,
+/// on the side that the file says.
+TEST(NormalMaps, TangentsOfTheFileTurnTheMap) {
+  MappedSquare square;
+  const glm::dvec3 n = decoded(kLeaning);
+  const auto turn_to = [&](const glm::dvec3& tangent, double side) {
+    const glm::dvec4 given(tangent, side);
+    square.scene.corners.tangents.assign(4, {given, given, given});
+    EXPECT_FALSE(testbench::features_of(square.scene, {}).tangents);
+    return film_of(square.scene);
+  };
+  expect_equal(turn_to(square.right, 1.0), film_of(square.with_normals(n)), kRounding);
+  expect_equal(turn_to(square.right, -1.0), film_of(square.with_normals({n.x, -n.y, n.z})), kRounding);
+  expect_equal(turn_to(square.up, 1.0), film_of(square.with_normals({-n.y, n.x, n.z})), kRounding);
+  expect_equal(turn_to(square.up, -1.0), film_of(square.with_normals({n.y, n.x, n.z})), kRounding);
+  // They describe coordinates before the texture's transform. One that mirrors needs tangents of its own.
+  square.scene.materials[0].textures.normal.transform.scale = {-1.0, 1.0};
+  expect_equal(turn_to(square.up, 1.0), film_of(square.with_normals({-n.x, n.y, n.z})), kRounding);
+}
+
+/// Over the square, the tangent turns from the right to the right and upwards. Each pixel shows what the
+/// tangent at its middle gives.
+TEST(NormalMaps, TangentsThatVaryAreInterpolated) {
+  MappedSquare square;
+  const auto tangent_at = [&](const glm::dvec3& position) {
+    return square.right + square.up * (0.25 * (glm::dot(position, square.right) + 3.0));
+  };
+  Scene scene = square.scene;
+  scene.corners.tangents.resize(4);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      scene.corners.tangents[i][corner] = glm::dvec4(tangent_at(scene.triangles[i].vertex[corner]), 1.0);
+  EXPECT_TRUE(testbench::features_of(scene, {}).tangents);
+  const Film varying = film_of(scene);
+  double largest = 0.0;
+  for (const int x : {0, 3, 7}) {
+    // The camera sees the square along z, in a view of 2 x 2 around its middle.
+    const double at_x = (x + 0.5) / 4.0 - 1.0;
+    const double at_y = 1.0 - (3 + 0.5) / 4.0;
+    const double at_z = -(square.front.x * at_x + square.front.y * at_y) / square.front.z;
+    const glm::dvec4 here(tangent_at({at_x, at_y, at_z}), 1.0);
+    square.scene.corners.tangents.assign(4, {here, here, here});
+    const int pixel = 3 * 8 + x;
+    const double expected = film_of(square.scene).mean(pixel).x;
+    EXPECT_NEAR(varying.mean(pixel).x, expected, 0.005 * expected) << x;
+    const double without = film_of(square.with_normals(decoded(kLeaning))).mean(pixel).x;
+    largest = std::max(largest, std::abs(without / expected - 1.0));
+  }
+  EXPECT_GT(largest, 0.05);
+}
+
 /// The map is laid on the interpolated normal, not on the triangle's.
 TEST(NormalMaps, TheMapLeansFromTheNormalsOfCorners) {
   MappedSquare square;

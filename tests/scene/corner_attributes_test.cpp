@@ -212,6 +212,73 @@ TEST_F(CornerAttributesTest, GltfNormalsTakePartInMorphing) {
   expect_near(mesh.corners.normals[0][1], {0, 0, 1});
 }
 
+/// A mesh of one triangle with a normal texture, each of whose vertices has these tangents.
+class GltfTangents : public CornerAttributesTest {
+ protected:
+  Scene load_tangents(const std::vector<float>& tangents, nlohmann::json node, bool has_normals = true,
+                      bool is_light = false) {
+    write("n.png", test_support::png_bytes(1, 1, {200, 128, 220}));
+    GltfBuilder file;
+    nlohmann::json attributes = {{"POSITION", file.add_accessor("VEC3", 3, test_support::kGltfCorners)}};
+    if (has_normals)
+      attributes["NORMAL"] =
+          file.add_accessor<float>("VEC3", 3, std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1});
+    attributes["TANGENT"] = file.add_accessor<float>("VEC4", 4, tangents);
+    file.add_mesh(attributes, {{"material", 0}});
+    file.add("images", {{"uri", "n.png"}});
+    file.add("textures", {{"source", 0}});
+    nlohmann::json material = {{"normalTexture", {{"index", 0}}}};
+    if (is_light) material.update({{"emissiveFactor", {1, 1, 1}}, {"doubleSided", true}});
+    file.add("materials", material);
+    node["mesh"] = 0;
+    file.add_node(node);
+    write("a.bin", file.bytes);
+    return testbench::load_scene(write("a.gltf", file.root.dump()));
+  }
+};
+
+void expect_tangent(const glm::dvec4& found, const glm::dvec3& direction, double side) {
+  expect_near(glm::dvec3(found), direction);
+  EXPECT_EQ(found.w, side);
+}
+
+const std::vector<float> kTangents{3, 0, 4, -1, 0, 1, 0, -1, 1, 1, 0, -1};
+
+/// Tangents move as directions do, unlike normals; a mirror changes their side.
+TEST_F(GltfTangents, MoveWithTheirMeshAndKeepTheirSide) {
+  const Scene still = load_tangents(kTangents, {});
+  ASSERT_FALSE(still.corners.tangents.empty());
+  expect_tangent(still.corners.tangents[0][0], {3, 0, 4}, -1.0);
+  expect_tangent(still.corners.tangents[0][1], {0, 1, 0}, -1.0);
+  expect_tangent(still.corners.tangents[0][2], {1, 1, 0}, -1.0);
+  const Scene stretched = load_tangents(kTangents, {{"scale", {2, 1, 0.5}}});
+  expect_tangent(stretched.corners.tangents.at(0)[0], {6, 0, 2}, -1.0);
+  const Scene mirrored = load_tangents(kTangents, {{"scale", {-2, 1, 0.5}}});
+  expect_tangent(mirrored.corners.tangents.at(0)[0], {-6, 0, 2}, 1.0);
+}
+
+/// glTF 2.0, section 3.7.2.1.
+TEST_F(GltfTangents, AreIgnoredWithoutNormals) {
+  const Scene scene = load_tangents(kTangents, {}, false);
+  EXPECT_TRUE(scene.corners.tangents.empty());
+  EXPECT_FALSE(scene.notes.lines().empty());
+}
+
+/// Where corners lie on different sides of the image, or have no tangent, the triangle has none.
+TEST_F(GltfTangents, ThatDisagreeAreNone) {
+  EXPECT_TRUE(load_tangents({1, 0, 0, 1, 1, 0, 0, -1, 1, 0, 0, 1}, {}).corners.tangents.empty());
+  EXPECT_TRUE(load_tangents({1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 1}, {}).corners.tangents.empty());
+  EXPECT_TRUE(load_tangents({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, {}).corners.tangents.empty());
+}
+
+/// The sheet behind a light shows the image from its own front: mirrored, by the same tangents.
+TEST_F(GltfTangents, OfBackSidesHaveTheOtherSide) {
+  const Scene scene = load_tangents(kTangents, {}, true, true);
+  ASSERT_EQ(scene.corners.tangents.size(), 2u);
+  expect_tangent(scene.corners.tangents[1][0], {3, 0, 4}, 1.0);
+  expect_tangent(scene.corners.tangents[1][2], {0, 1, 0}, 1.0);  // the second corner of the front
+}
+
 TEST_F(CornerAttributesTest, GltfWithoutNormalsIsFlat) {
   EXPECT_TRUE(load_gltf({0, 0, 1}, {}).corners.is_empty());
   EXPECT_TRUE(load_gltf({0, 0, 0}, {}).corners.is_empty());

@@ -190,8 +190,27 @@ TEST_F(MtlMaterialTest, BumpIsANormalMapUnlessItIsGrey) {
   EXPECT_FALSE(height.materials.at(0).textures.normal);
   EXPECT_TRUE(height.textures.empty());
   EXPECT_TRUE(height.corners.is_empty());
-  EXPECT_NE(notes("bump height.png\n").find("m.mtl:4: bump: height.png: a height map (bump) is left out"),
+  EXPECT_NE(notes("bump height.png\n")
+                .find("m.mtl:4: bump: height.png: a height map (bump) of one height shows nothing"),
             std::string::npos);
+}
+
+/// 51 texels for white, 5 codes a texel: a slope of one in the middle of three columns.
+TEST_F(MtlMaterialTest, GreyBumpIsHeightsOfWhichNormalsAreMade) {
+  write("ramp.png", test_support::png_bytes(3, 1, {10, 10, 10, 15, 15, 15, 20, 20, 20}));
+  const Scene scene = open_mesh("map_bump -clamp on -bm 51 ramp.png\n");
+  const Material& bumpy = scene.materials.at(0);
+  ASSERT_TRUE(bumpy.textures.normal);
+  EXPECT_EQ(bumpy.normal_scale, 1.0);
+  EXPECT_EQ(bumpy.textures.normal.wrap_u, TextureWrap::clamp_to_edge);
+  ASSERT_EQ(scene.textures.size(), 1u);
+  const testbench::Image& normals = scene.textures[0].image;
+  ASSERT_EQ(normals.texels.size(), 9u);
+  EXPECT_EQ(std::vector<int>(normals.texels.begin() + 3, normals.texels.begin() + 6),
+            (std::vector<int>{37, 128, 218}));  // 127.5 * (1 -+ sqrt(1/2))
+  EXPECT_EQ(scene.textures[0].encoding, testbench::TexelEncoding::linear);
+  EXPECT_EQ(notes("map_bump ramp.png\n").find("height map"), std::string::npos);
+  EXPECT_EQ(open_mesh("norm ramp.png\n").textures.at(0).image.texels[0], 10);  // normals by its keyword
 }
 
 TEST_F(MtlMaterialTest, AMissingTextureIsAnErrorInASceneAndANoteForAMeshAlone) {

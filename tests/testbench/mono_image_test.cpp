@@ -208,6 +208,26 @@ TEST(MonoImage, HalvesOfARectangleAreOneLightWhenSampledBySolidAngle) {
   }
 }
 
+/// A survey stands for the host's paths, to the bit, if it is one of the same lights; they are others for
+/// each way to choose points.
+TEST(MonoImage, TakesItsLightsWeightsFromASurvey) {
+  using path_tracer::LightSampling;
+  const Scene scene = lights_of_all_shapes();
+  path_tracer::ProgramConfig config;
+  for (const LightSampling sampling : {LightSampling::area, LightSampling::solid_angle}) {
+    config.light_sampling = sampling;
+    const std::vector<std::uint8_t> expected = testbench::make_normal_mono_image(scene, 96, config).bytes;
+    const auto bytes_with = [&](const testbench::LightSurvey& survey) {
+      return testbench::make_normal_mono_image(scene, 96, config, &survey).bytes;
+    };
+    for (const LightSampling surveyed : {LightSampling::area, LightSampling::solid_angle})
+      EXPECT_EQ(bytes_with(testbench::make_normal_light_survey(scene, surveyed)), expected);
+    testbench::LightSurvey other = testbench::make_normal_light_survey(scene, sampling);
+    other.weights.choice.front() *= 2.0;
+    EXPECT_NE(bytes_with(other), expected);
+  }
+}
+
 /// A rectangle, a single triangle, and two triangles of one face that are separate lights.
 TEST(MonoImage, WithATreeALightHasAllTrianglesOfItsFace) {
   path_tracer::ProgramConfig config = with_tree();

@@ -233,11 +233,18 @@ inline Rgb absorb(const ShadeArguments& arguments, const mask& front) {
 /// The normal that the triangle's normal texture says (glTF 2.0, section 3.9.3). The tangent is turned into
 /// the plane of `normal`, as MikkTSpace does: https://github.com/mmikk/MikkTSpace.
 /// @param normal without the texture, on the front
-inline Direction3 mapped_normal(const ShadeArguments& arguments, const Direction3& normal) {
+inline Direction3 mapped_normal(const ShadeArguments& arguments, const Point3& position,
+                                const Direction3& normal) {
   const auto record = tail<TangentRecord>(arguments.surface, arguments.sizes.tangent);
   const Rgb texel =
       TexturesAtHit(arguments.surface, arguments.sizes, arguments.look_ups).linear(TextureSlot::normal);
-  const Direction3 in_plane = record.get(&TangentRecord::tangent);
+  Direction3 in_plane = record.get(&TangentRecord::tangent);
+  if (arguments.features.tangents) {
+    const auto slope = tail<TangentSlopeRecord>(arguments.surface, arguments.sizes.tangent_slope);
+    bsdf_detail::assign(in_plane, in_plane + slope.get(&TangentSlopeRecord::along_x) * position.x +
+                                      slope.get(&TangentSlopeRecord::along_y) * position.y +
+                                      slope.get(&TangentSlopeRecord::along_z) * position.z);
+  }
   const Direction3 none{0.0, 0.0, 0.0};
   const Direction3 tangent = normalize(in_plane - normal * dot(in_plane, normal), none);
   const poly<double> x = (texel.x * 2.0 - 1.0) * record.get(&TangentRecord::x_scale);
@@ -263,7 +270,7 @@ inline Direction3 shading_normal(const ShadeArguments& arguments, const Point3& 
   Direction3 unit = arguments.features.normals ? interpolated_normal(arguments, position, normal)
                                                : arguments.surface.get(&SurfaceRecord::normal);
   if (arguments.features.textures.has(TextureSlot::normal))
-    bsdf_detail::assign(unit, mapped_normal(arguments, unit));
+    bsdf_detail::assign(unit, mapped_normal(arguments, position, unit));
   const Direction3 facing = cn::select(front, unit, unit * -1.0);
   return cn::select(dot(facing, to_viewer) > kLeastCosine, facing, normal);
 }

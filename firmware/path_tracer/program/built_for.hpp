@@ -35,7 +35,7 @@ inline void add_every_feature(Features& features) {
 }
 
 /// Values of the option `built_for`. An image of an environment is not among them, since it has texels to
-/// look up.
+/// look up, nor are tangents that a file gives, with which a program for anything would not fit a PE.
 inline constexpr std::array<ExtraFeature, 21> kBuiltForTable = {{
     {"scene", [](Features&) {}},
     {"glossy", [](Features& features) { features.lobes.glossy = true; }},

@@ -87,6 +87,7 @@ struct Features {
   LightKinds lights;
   bool environment = false;  ///< light of one colour that arrives from outside
   bool normals = false;      ///< that vary over triangles
+  bool tangents = false;     ///< of normal textures, that vary over triangles
   TextureSlots textures;
   /// Kinds of materials that are shaded apart (Shading::material_bins); 1 where nothing tells them apart.
   int shading_kinds = 1;

@@ -85,6 +85,15 @@ struct TangentRecord {
   double y_scale = 0;      ///< and along normal x tangent; negative where the image is mirrored
 };
 
+/// Behind a SurfaceRecord, in scenes whose files give tangents that vary over a triangle: the tangent at
+/// `position` is TangentRecord's plus what these add, an affine function of the position. Then
+/// TangentRecord's is that of the origin, and the sum need not have unit length.
+struct TangentSlopeRecord {
+  vec3<double> along_x{};
+  vec3<double> along_y{};
+  vec3<double> along_z{};
+};
+
 /// Values of TextureRecord::wrap_x and wrap_y: what stands beyond an image's edge (glTF 2.0,
 /// section 3.8.4.5).
 enum class TextureWrap : std::int32_t { repeat, mirrored_repeat, clamp_to_edge };
@@ -184,6 +193,7 @@ struct RecordSizes {
   int sheen = kNone;
   int normal = kNone;
   int tangent = kNone;
+  int tangent_slope = kNone;
   int texture[kTextureSlots] = {};
   int aim = kNone;
   int shading_kind = kNone;
@@ -227,6 +237,7 @@ struct RecordSizes {
     sheen = append(features.lobes.sheen, sizeof(SheenRecord));
     normal = append(features.normals, sizeof(NormalRecord));
     tangent = append(features.textures.has(TextureSlot::normal), sizeof(TangentRecord));
+    tangent_slope = append(features.tangents, sizeof(TangentSlopeRecord));
     for (int slot = 0; slot < kTextureSlots; ++slot)
       if (TextureSlot(slot) != TextureSlot::alpha) append_texture(TextureSlot(slot));
     environment = look_ups;

@@ -172,6 +172,8 @@ void BenchAdaptiveCommand::run() {
   outputs.require_no_input(inputs);
   options.program = built_for(loaded, options.program);
   choose_tree(TriangleCount(loaded), options.chip, firmware.given(), options.program);
+  options.light_survey =
+      std::make_shared<const LightSurvey>(make_normal_light_survey(loaded, options.program.light_sampling));
   std::vector<SamplingPoint> points;
   ProgressBar bar("bench adaptive");
   for (const double target : targets) {

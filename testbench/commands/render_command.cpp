@@ -120,12 +120,17 @@ void RenderCommand::write_image(const Film& film,
   if (!outputs.path("--png").empty()) write_png(outputs.path("--png"), film);
 }
 
-void print_film_notes(const Scene& loaded, const Film& film) {
+void print_film_notes(const Scene& loaded, const Film& film, path_tracer::Program program) {
   const int without = film.samples().pixels_without;
   if (without > 0)
     print_note(std::to_string(without) + " of " + std::to_string(film.pixel_count()) +
                " pixels have no path and are black");
-  if (is_black(film)) print_note("every pixel is black: " + why_black(loaded));
+  const bool casts_shadow_rays = program != path_tracer::Program::segments;
+  if (is_black(film))
+    print_note("every pixel is black: " + why_black(loaded, casts_shadow_rays));
+  else if (!casts_shadow_rays && !loaded.lights.empty())
+    print_note("program segments casts no shadow rays: points, spots, suns and parallel light, " +
+               std::to_string(loaded.lights.size()) + " in all, light no surface");
   if (is_below_single_precision(film))
     print_note(
         "every pixel is darker than 1.2e-38, of which the single precision of OpenEXR files keeps fewer "
@@ -196,7 +201,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
   write_image(render->film, provenance);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
   print_notes(loaded.notes);
-  print_film_notes(loaded, render->film);
+  print_film_notes(loaded, render->film, request.options.program.program);
   std::printf("%s, %d x %d, %d samples a pixel shared by %d ranks: %llu path segments",
               printable(loaded.name).c_str(), loaded.film.width, loaded.film.height,
               request.options.work.samples, ranks.size(), static_cast<unsigned long long>(render->segments));
@@ -234,7 +239,7 @@ void RenderCommand::run_in_passes(Ranks& ranks) {
   write_image(render->film, of_image);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
   print_notes(loaded.notes);
-  print_film_notes(loaded, render->film);
+  print_film_notes(loaded, render->film, request.options.program.program);
   print_head(loaded, request);
   std::fputs(pass_table(*render, *plan).c_str(), stdout);
 }
@@ -266,7 +271,7 @@ void RenderCommand::run() {
   outputs.write("--stats", [&] {
     return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
   });
-  print_film_notes(loaded, result.film);
+  print_film_notes(loaded, result.film, request.options.program.program);
   if (statistics_text_wanted) std::fputs(statistics_text(render_statistics(request, result)).c_str(), stdout);
   print_notes(loaded.notes);
   print_head(loaded, request);

@@ -82,10 +82,18 @@ bool any_light_faces(const Scene& scene, const std::vector<ViewedPoint>& points)
   });
 }
 
+bool has_only_lights_without_area(const Scene& scene) {
+  return !scene.lights.empty() && !scene.environment.is_lit() &&
+         std::none_of(scene.triangles.begin(), scene.triangles.end(),
+                      [&](const Triangle& triangle) { return is_light(scene, triangle); });
+}
+
 /// why_black() of a scene in its normal unit.
-std::string reason_of_black(const Scene& scene) {
+std::string reason_of_black(const Scene& scene, bool casts_shadow_rays) {
   const std::vector<ViewedPoint> points = viewed_points(scene);
   if (points.empty()) return "the camera sees no surface; it may look away from the scene";
+  if (!casts_shadow_rays && has_only_lights_without_area(scene))
+    return "program segments casts no shadow rays, and no path hits a light without area";
   if (!any_light_faces(scene, points))
     return "every light faces away from what the camera sees; a light emits from the side from which its "
            "vertices run counter-clockwise";
@@ -119,8 +127,8 @@ bool is_below_single_precision(const Film& film) {
   return largest > 0.0 && largest < double(FLT_MIN);
 }
 
-std::string why_black(const Scene& scene) {
-  return reason_of_black(normalised(scene));
+std::string why_black(const Scene& scene, bool casts_shadow_rays) {
+  return reason_of_black(normalised(scene), casts_shadow_rays);
 }
 
 }  // namespace testbench

@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 
 # The scenes that have one. To add a scene: its name.
-scenes="cornell_box glossy glass environment many_lights textured"
+scenes="cornell_box glossy glass environment many_lights textured outdoors"
 
 csx600=${1:-build/release/csx600}
 [ $# -lt 2 ] || { shift; scenes=$*; }

@@ -33,8 +33,19 @@ Scene scene_of(std::vector<Triangle> triangles) {
 }
 
 void expect_reason(const Scene& scene, const std::string& part) {
-  const std::string reason = testbench::why_black(scene);
+  const std::string reason = testbench::why_black(scene, true);
   EXPECT_NE(reason.find(part), std::string::npos) << reason;
+}
+
+/// Without shadow rays, nothing finds a point; a surface that emits is found by hits.
+TEST(BlackFilm, OfPathsThatFindNoLightWithoutAreaSaysSo) {
+  Scene scene = scene_of({wall(5, kGrey)});
+  scene.lights.emplace_back();
+  const std::string part = "program segments casts no shadow rays";
+  EXPECT_NE(testbench::why_black(scene, false).find(part), std::string::npos);
+  EXPECT_EQ(testbench::why_black(scene, true).find(part), std::string::npos);
+  scene.triangles.push_back(wall(9, kLight));
+  EXPECT_EQ(testbench::why_black(scene, false).find(part), std::string::npos);
 }
 
 TEST(BlackFilm, SaysWhatTheCameraSees) {

@@ -22,6 +22,12 @@ namespace {
 /// What one process renders at a time: long enough to be worth a process, short enough to show progress.
 constexpr int kSamplesOfPart = 64;
 
+/// How a second image of the scene is rendered.
+struct SecondEstimator {
+  RenderOptions options;
+  std::string how;  ///< what its paths do
+};
+
 struct BenchReferenceCommand {
   SceneArgument scene;
   SizeOption size;
@@ -37,7 +43,7 @@ struct BenchReferenceCommand {
 
  private:
   RenderResult render(const Scene& loaded, const RenderOptions& of, const char* what) const;
-  RenderOptions second_estimator() const;
+  SecondEstimator second_estimator(const Scene& loaded) const;
   void check(const Scene& loaded, const Film& reference) const;
 };
 
@@ -61,34 +67,44 @@ RenderResult BenchReferenceCommand::render(const Scene& loaded, const RenderOpti
   return result;
 }
 
-/// Light found by hits only, by other random numbers.
-RenderOptions BenchReferenceCommand::second_estimator() const {
+/// Light found by hits only, by other random numbers. No hit finds a light without area. Scenes with such
+/// lights have shadow rays in both images, but others choose and weigh them.
+SecondEstimator BenchReferenceCommand::second_estimator(const Scene& loaded) const {
   RenderOptions second = options;
-  second.program.program = path_tracer::Program::segments;
   second.program.seed = options.program.seed + 1;
   second.work.samples = check_samples;
-  return second;
+  if (loaded.lights.empty()) {
+    second.program.program = path_tracer::Program::segments;
+    return {second, "find light by hits only"};
+  }
+  second.program.estimator = path_tracer::Estimator::mis;
+  second.program.light_sampling = path_tracer::LightSampling::solid_angle;
+  second.program.light_candidates =
+      options.program.light_candidates > 1 ? 1 : path_tracer::kMaxLightCandidates;
+  return {second, "choose lights among " + std::to_string(second.program.light_candidates) +
+                      " and weigh shadow rays and hits against each other"};
 }
 
 void BenchReferenceCommand::check(const Scene& loaded, const Film& reference) const {
   if (check_samples == 0) return;
-  const RenderResult second = render(loaded, second_estimator(), "bench reference: second estimator");
+  const SecondEstimator estimator = second_estimator(loaded);
+  const RenderResult second = render(loaded, estimator.options, "bench reference: second estimator");
   const ImageAgreement agreement = agreement_of(reference, second.film);
-  std::printf("against %d samples a pixel that find light by hits only:\n%s", check_samples,
+  std::printf("against %d samples a pixel that %s:\n%s", check_samples, estimator.how.c_str(),
               agreement.text().c_str());
   if (!agreement.holds())
-    throw RunError(loaded.name + ": shadow rays and hits give different images; nothing was written");
+    throw RunError(loaded.name + ": the two estimators give different images; nothing was written");
 }
 
 void BenchReferenceCommand::run() {
   outputs.require_writable();
   size.require_valid();
   options.chip = chip.chip();
-  search_natively(options);
   options.level = level.level();
   const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded));
   options.program = program_for(loaded, options.chip, options.program);
+  search_natively(options);
   const RenderResult result = render(loaded, options, "bench reference");
   check(loaded, result.film);
   std::map<std::string, std::string> attributes = render_provenance({scene.path(), options, true}, result);
@@ -118,11 +134,12 @@ void add_bench_reference_command(CLI::App& bench) {
   state->outputs.add_to(command, "-o,--output", "OpenEXR file to write").required();
   in_range(command.add_option("--samples", state->options.work.samples, "Paths a pixel"), 2, 1 << 30)
       ->capture_default_str();
-  in_range(
-      command.add_option("--check-samples", state->check_samples,
-                         "Paths a pixel of a second image, whose paths find light by hits only; where the "
-                         "two differ by more than their noise, the command fails"),
-      2, 1 << 30)
+  in_range(command.add_option(
+               "--check-samples", state->check_samples,
+               "Paths a pixel of a second image, whose paths find light by hits only, or weigh both "
+               "ways where lights have no area; if the two differ by more than their noise, the "
+               "command fails"),
+           2, 1 << 30)
       ->default_str("none");
   state->size.add_to(command);
   state->firmware.add_to(command, state->options.program, *path_tracer::find_option("seed"));

@@ -72,7 +72,8 @@ class MtlOptions {
   void read_word(const std::string& option, const std::string& value) {
     if (option == "-clamp" && value == "on")
       texture_.reference.wrap_u = texture_.reference.wrap_v = TextureWrap::clamp_to_edge;
-    if (option == "-bm") parse_number(value, texture_.bump_multiplier);
+    double number = 0.0;
+    if (option == "-bm" && parse_number(value, number)) texture_.bump_multiplier = number;
     if (option != "-imfchan") return;
     const std::size_t channel = std::string_view("rgbm").find(value);
     if (value.size() == 1 && channel != std::string_view::npos) texture_.channel = static_cast<int>(channel);

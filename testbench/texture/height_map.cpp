@@ -1,5 +1,6 @@
 #include "testbench/texture/height_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "testbench/texture/sample.hpp"
@@ -17,13 +18,14 @@ class Heights {
     const int row = wrapped_index(y, image_.height, map_.wrap_v);
     const std::size_t texel = std::size_t(row) * std::size_t(image_.width) + std::size_t(column);
     const std::uint8_t* const codes = &image_.texels[texel * std::size_t(image_.channels)];
-    return map_.white_texels * codes[map_.channel] / 255.0;
+    return map_.white_texels * (codes[map_.channel] / 255.0);
   }
 
   /// y grows upwards, rows downwards.
   glm::dvec3 normal_at(int x, int y) const {
-    return glm::normalize(
-        glm::dvec3(0.5 * (at(x - 1, y) - at(x + 1, y)), 0.5 * (at(x, y + 1) - at(x, y - 1)), 1.0));
+    const glm::dvec3 normal(0.5 * (at(x - 1, y) - at(x + 1, y)), 0.5 * (at(x, y + 1) - at(x, y - 1)), 1.0);
+    // Divided first, so that the square of a steep slope does not overflow.
+    return glm::normalize(normal / std::max({std::abs(normal.x), std::abs(normal.y), 1.0}));
   }
 
  private:

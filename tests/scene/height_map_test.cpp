@@ -60,6 +60,11 @@ TEST(HeightMaps, EdgesAreWrapped) {
   EXPECT_EQ(texel(normals_of_heights(slope(0, 5), map), 0, 3)[1], code_of(0.5 / std::sqrt(1.25)));
 }
 
+TEST(HeightMaps, CliffsLeanAllTheWay) {
+  EXPECT_EQ(texel(normals_of_heights(slope(5, 0), {0, 1e308}), 2, 1),
+            (std::array<int, 3>{0, code_of(0.0), code_of(0.0)}));
+}
+
 TEST(HeightMaps, TakeTheirChannel) {
   Image image = slope(0, 0);
   image.channels = 2;  // grey and alpha, row by row

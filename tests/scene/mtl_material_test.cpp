@@ -209,6 +209,8 @@ TEST_F(MtlMaterialTest, GreyBumpIsHeightsOfWhichNormalsAreMade) {
   EXPECT_EQ(std::vector<int>(normals.texels.begin() + 3, normals.texels.begin() + 6),
             (std::vector<int>{37, 128, 218}));  // 127.5 * (1 -+ sqrt(1/2))
   EXPECT_EQ(scene.textures[0].encoding, testbench::TexelEncoding::linear);
+  for (const char* no_number : {"inf", "nan", "abc"})
+    EXPECT_EQ(material("norm -bm " + std::string(no_number) + " ramp.png\n").normal_scale, 1.0);
   EXPECT_EQ(notes("map_bump ramp.png\n").find("height map"), std::string::npos);
   EXPECT_EQ(open_mesh("norm ramp.png\n").textures.at(0).image.texels[0], 10);  // normals by its keyword
 }

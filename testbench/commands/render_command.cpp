@@ -84,9 +84,11 @@ RenderRequest RenderCommand::make_request() const {
 }
 
 std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& of) const {
-  of.program = built_for(loaded, of.program);
   if (firmware.given().count("light_candidates") == 0)
     of.program.light_candidates = suited_light_candidates(loaded);
+  if (firmware.given().count("estimator") == 0)
+    of.program.estimator = suited_estimator(loaded, of.program.light_candidates);
+  of.program = built_for(loaded, of.program);
   path_tracer::ProgramConfig of_chip = of.program;
   std::string reason = choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of_chip);
   if (native && !firmware_search && firmware.given().count("traversal") == 0 && !of.check_hazards) {

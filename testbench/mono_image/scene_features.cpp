@@ -144,4 +144,9 @@ int suited_light_candidates(const Scene& scene) {
   return (emitting + 1) / 2 + near < kFewLights ? 1 : path_tracer::kMaxLightCandidates;
 }
 
+path_tracer::Estimator suited_estimator(const Scene& scene, int light_candidates) {
+  return scene.environment.shows_image() && light_candidates == 1 ? path_tracer::Estimator::mis
+                                                                  : path_tracer::Estimator::per_lobe;
+}
+
 }  // namespace testbench

@@ -244,4 +244,46 @@ TEST_F(LightCandidates, AreChosenByTheNumberOfLights) {
   EXPECT_EQ(testbench::suited_light_candidates(under_lamps(2, {8, 6})), 8);
 }
 
+/// Under a sky, hits share the light of diffuse surfaces too; not where eight candidates agree on a light.
+TEST_F(LightCandidates, DecideUnderASkyWhichEstimatorPays) {
+  using path_tracer::Estimator;
+  Scene scene = test_support::plane_under_light({{0.25, 0.5, 0.75}, {4.0, 2.0, 1.0}}, {8, 6});
+  EXPECT_EQ(testbench::suited_estimator(scene, 1), Estimator::per_lobe);
+  scene.environment.constant = glm::dvec3(1.0);
+  EXPECT_EQ(testbench::suited_estimator(scene, 1), Estimator::per_lobe);  // which shadow rays do not aim at
+  testbench::RadianceImage sky{4, 2, std::vector<float>(24, 1.0f)};
+  sky.rgb[0] = 8.0f;
+  scene.environment.image = sky;
+  EXPECT_EQ(testbench::suited_estimator(scene, 1), Estimator::mis);
+  EXPECT_EQ(testbench::suited_estimator(scene, 8), Estimator::per_lobe);
+}
+
+/// What the choice rests on: with equal samples, the variance of diffuse surfaces under a sky that is bright
+/// at the zenith is lower, and the mean is the same.
+TEST_F(LightCandidates, OfASkyAloneGainByHits) {
+  Scene scene = test_support::sphere_under_light(3, {8, 6});
+  for (testbench::Material& material : scene.materials) material.emission = glm::dvec3(0.0);
+  testbench::RadianceImage sky{16, 8, std::vector<float>(384, 0.1f)};
+  for (std::size_t i = 0; i < 192; ++i) sky.rgb[i] = 4.0f - float(i / 48);  // the upper half, row by row
+  scene.environment.image = sky;
+  const auto render_by = [&](path_tracer::Estimator estimator) {
+    RenderOptions options = options_for(1, 256);
+    options.program.estimator = estimator;
+    options.program.sampler = path_tracer::Sampler::philox;
+    return testbench::render_natively(scene, options).film;
+  };
+  const testbench::Film both = render_by(path_tracer::Estimator::mis);
+  const testbench::Film shadow_rays = render_by(path_tracer::Estimator::per_lobe);
+  double variance_of_both = 0.0;
+  double variance = 0.0;
+  double difference = 0.0;
+  for (int pixel = 0; pixel < both.pixel_count(); ++pixel) {
+    variance_of_both += both.variance_of_mean(pixel).x;
+    variance += shadow_rays.variance_of_mean(pixel).x;
+    difference += both.mean(pixel).x - shadow_rays.mean(pixel).x;
+  }
+  EXPECT_LT(variance_of_both, 0.8 * variance);
+  EXPECT_LT(std::abs(difference), 5.0 * std::sqrt(variance + variance_of_both));
+}
+
 }  // namespace light_candidates_test

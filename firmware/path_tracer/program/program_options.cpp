@@ -172,26 +172,28 @@ Options bins() {
 
 // The defaults give the least error for the time (`csx600 bench error`, Cornell box).
 Options sampling() {
-  return {choice<&ProgramConfig::sampler>(
-              "sampler", Sampler::sobol, kSamplerNames,
-              "random numbers: philox (independent) or sobol (Owen-scrambled: a pixel's are stratified)"),
-          choice<&ProgramConfig::light_sampling>(
-              "light_sampling", LightSampling::solid_angle, kLightSamplingNames,
-              "points of a light: uniform in its area, or in the solid angle that it subtends"),
-          choice<&ProgramConfig::estimator>("estimator", Estimator::per_lobe, kEstimatorNames,
-                                            "light of emitting triangles: by shadow rays, by shadow rays and "
-                                            "hits weighed against each other, or "
-                                            "as suits each surface"),
-          chosen("8 where lights are many",
-                 one_of<&ProgramConfig::light_candidates>(
-                     "light_candidates", "lights", 1, {1, 2, 4, kMaxLightCandidates},
-                     "lights of which a vertex takes one by its estimated effect there; 1: by chance alone")),
-          integer<&ProgramConfig::roulette_start>("roulette_start", "segments", 3, {0, kMaxSegments},
-                                                  "segments that a path lives without Russian roulette"),
-          real<&ProgramConfig::max_survival>("max_survival", "-", 0.999999, {0, 1},
-                                             "largest probability with which roulette lets a path go on"),
-          {"seed", "-", std::uint64_t{1}, Unsigned64{}, "seed of the random numbers",
-           &Field<&ProgramConfig::seed>::read_as_held, &Field<&ProgramConfig::seed>::write_as_held}};
+  return {
+      choice<&ProgramConfig::sampler>(
+          "sampler", Sampler::sobol, kSamplerNames,
+          "random numbers: philox (independent) or sobol (Owen-scrambled: a pixel's are stratified)"),
+      choice<&ProgramConfig::light_sampling>(
+          "light_sampling", LightSampling::solid_angle, kLightSamplingNames,
+          "points of a light: uniform in its area, or in the solid angle that it subtends"),
+      chosen("mis under an environment's image",
+             choice<&ProgramConfig::estimator>(
+                 "estimator", Estimator::per_lobe, kEstimatorNames,
+                 "light of emitting triangles and of an environment's image: by shadow rays, by shadow rays "
+                 "and hits weighed against each other, or as suits each surface")),
+      chosen("8 where lights are many",
+             one_of<&ProgramConfig::light_candidates>(
+                 "light_candidates", "lights", 1, {1, 2, 4, kMaxLightCandidates},
+                 "lights of which a vertex takes one by its estimated effect there; 1: by chance alone")),
+      integer<&ProgramConfig::roulette_start>("roulette_start", "segments", 3, {0, kMaxSegments},
+                                              "segments that a path lives without Russian roulette"),
+      real<&ProgramConfig::max_survival>("max_survival", "-", 0.999999, {0, 1},
+                                         "largest probability with which roulette lets a path go on"),
+      {"seed", "-", std::uint64_t{1}, Unsigned64{}, "seed of the random numbers",
+       &Field<&ProgramConfig::seed>::read_as_held, &Field<&ProgramConfig::seed>::write_as_held}};
 }
 
 Options tree() {

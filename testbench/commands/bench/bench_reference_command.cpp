@@ -77,12 +77,13 @@ SecondEstimator BenchReferenceCommand::second_estimator(const Scene& loaded) con
     second.program.program = path_tracer::Program::segments;
     return {second, "find light by hits only"};
   }
-  second.program.estimator = path_tracer::Estimator::mis;
+  using path_tracer::Estimator;
+  second.program.estimator = options.program.estimator == Estimator::mis ? Estimator::light : Estimator::mis;
   second.program.light_sampling = path_tracer::LightSampling::solid_angle;
   second.program.light_candidates =
       options.program.light_candidates > 1 ? 1 : path_tracer::kMaxLightCandidates;
   return {second, "choose lights among " + std::to_string(second.program.light_candidates) +
-                      " and weigh shadow rays and hits against each other"};
+                      ", by estimator " + name_of(second.program.estimator)};
 }
 
 void BenchReferenceCommand::check(const Scene& loaded, const Film& reference) const {
@@ -137,7 +138,7 @@ void add_bench_reference_command(CLI::App& bench) {
   in_range(command.add_option(
                "--check-samples", state->check_samples,
                "Paths a pixel of a second image, whose paths find light by hits only, or weigh both "
-               "ways where lights have no area; if the two differ by more than their noise, the "
+               "ways otherwise where lights have no area; if the two differ by more than their noise, the "
                "command fails"),
            2, 1 << 30)
       ->default_str("none");

@@ -5,10 +5,10 @@
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 
+#include "testbench/bvh/scene_rays.hpp"
 #include "testbench/mono_image/faces.hpp"
 #include "testbench/mono_image/light_choice.hpp"
 #include "testbench/mono_image/light_clusters.hpp"
-#include "testbench/mono_image/scene_rays.hpp"
 #include "testbench/scene/film_ray.hpp"
 
 namespace testbench {

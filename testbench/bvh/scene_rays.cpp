@@ -1,4 +1,4 @@
-#include "testbench/mono_image/scene_rays.hpp"
+#include "testbench/bvh/scene_rays.hpp"
 
 #include <cmath>
 #include <limits>

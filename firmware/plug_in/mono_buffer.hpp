@@ -60,6 +60,10 @@ class MonoBuffer : public MonoBufferBase {
   std::size_t size() const { return host_.size(); }
   T& operator[](std::size_t index) { return host_[index]; }
   const T& operator[](std::size_t index) const { return host_[index]; }
+  auto begin() { return host_.begin(); }
+  auto end() { return host_.end(); }
+  auto begin() const { return host_.begin(); }
+  auto end() const { return host_.end(); }
 
   cn::MonoPointer<T> mono() const { return {address()}; }
   /// Where each PE's piece of a copy lies: side by side, `elements` for each PE, from element `first` on.

@@ -2,6 +2,7 @@
 // buffer.
 
 #include <cstdio>
+#include <numeric>
 
 #include "firmware/plug_in/firmware.hpp"
 
@@ -52,7 +53,7 @@ class Faults : public plug_in::Firmware {
   void prepare(int num_pes) override {
     if (fault_ == kBadOptions) throw plug_in::OptionError("fault: found 5, allowed is anything else");
     numbers_.resize(fault_ == kTooMuchMono ? std::size_t{1} << 20 : std::size_t(num_pes));
-    for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = double(i);
+    std::iota(numbers_.begin(), numbers_.end(), 0.0);
   }
 
   void run(cn::Machine& machine) override {
@@ -72,7 +73,7 @@ class Faults : public plug_in::Firmware {
 
   void check() const override {
     sum_.set(0);
-    for (std::size_t i = 0; i < numbers_.size(); ++i) sum_.set(sum_.value() + numbers_[i]);
+    for (const double number : numbers_) sum_.set(sum_.value() + number);
     for (std::size_t i = 0; i < numbers_.size(); ++i)
       if (numbers_[i] != (fault_ == kWrongResult ? 3.0 : 2.0) * double(i))
         throw plug_in::CheckFailed("number " + std::to_string(i) + " is wrong");

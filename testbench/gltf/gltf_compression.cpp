@@ -124,6 +124,9 @@ DracoPrimitive decode_draco(const GltfDocument& document, const GltfBytes& packe
     if (attribute == nullptr)
       document.fail(std::string(pointer).append("/attributes/").append(name), json_in_message(id),
                     "the number of an attribute in the data");
+    if (attribute->data_type() == draco::DT_BOOL)  // whose bytes may be neither true nor false
+      document.fail(std::string(pointer).append("/attributes/").append(name), "an attribute of booleans",
+                    "numbers");
     primitive.attributes.emplace(name, numbers_of(*mesh, *attribute));
   }
   for (std::uint32_t face = 0; face < mesh->num_faces(); ++face)

@@ -3,6 +3,8 @@
 # what covered more than the committed inputs in out/fuzz/corpus/TARGET, where the next run goes on. Exit code 1: findings.
 #
 #     tests/fuzz/run.sh SECONDS [TARGET...]
+#
+# CSX600_FUZZ_SEED: the seed of libFuzzer's inputs, which then come in the same order each time; without it one of its own.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 here=tests/fuzz
@@ -29,7 +31,8 @@ rm -rf "$TMPDIR"
 mkdir -p "$TMPDIR"
 touch "$output/start"
 export ASAN_OPTIONS=quarantine_size_mb=16:${ASAN_OPTIONS:-}
-limits=(-timeout=10 -report_slow_units=60 -malloc_limit_mb=512 -rss_limit_mb=1024)
+seed=${CSX600_FUZZ_SEED:-0}  # 0: libFuzzer's choice
+limits=(-seed="$seed" -timeout=10 -report_slow_units=60 -malloc_limit_mb=512 -rss_limit_mb=1024)
 
 # number_behind WORDS FILE: the last number that follows these words; 0 without one.
 number_behind() {

@@ -58,6 +58,7 @@ struct RenderCommand {
   std::optional<PreparedRender> prepare(Ranks& ranks) const;
   RenderRequest make_request() const;
   std::string choose_tree_for(const Scene& loaded, RenderOptions& of) const;
+  void suit_to(const Scene& loaded, RenderRequest& request) const;
   std::vector<InputName> inputs(const Scene& loaded) const;
   void list_samples(MeanSamples of_pixels, RenderRequest& request) const;
   void write_image(const Film& film, const std::map<std::string, std::string>& provenance) const;
@@ -98,6 +99,12 @@ std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& o
   }
   of.program = of_chip;
   return reason;
+}
+
+/// What the request takes from its scene.
+void RenderCommand::suit_to(const Scene& loaded, RenderRequest& request) const {
+  request.triangles = loaded.triangles.size();
+  request.traversal_reason = choose_tree_for(loaded, request.options);
 }
 
 std::vector<InputName> RenderCommand::inputs(const Scene& loaded) const {
@@ -154,8 +161,7 @@ std::optional<PreparedRender> RenderCommand::prepare(Ranks& ranks) const {
     size.require_valid();
     Scene loaded = size.resized(scene.load());
     if (ranks.is_first()) outputs.require_no_input(inputs(loaded));
-    request.triangles = loaded.triangles.size();
-    request.traversal_reason = choose_tree_for(loaded, request.options);
+    suit_to(loaded, request);
     std::vector<double> of_pixels = importance.importance(loaded.film, request.options.work.samples);
     if (!passes.any()) list_samples(of_pixels, request);
     if (ranks.is_first()) passes.prepare_snapshots();
@@ -256,8 +262,7 @@ void RenderCommand::run() {
   size.require_valid();
   const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs(loaded), observation.outputs());
-  request.triangles = loaded.triangles.size();
-  request.traversal_reason = choose_tree_for(loaded, request.options);
+  suit_to(loaded, request);
   list_samples(importance.importance(loaded.film, request.options.work.samples), request);
   const InterruptGuard interrupt;
   const RenderResult result = [&] {

@@ -62,12 +62,7 @@ class ClaimRunList {
  private:
   /// The 18 different cells of Tables 1 and 2: "segments, n = 0" and so on.
   void add_tables() {
-    std::vector<PaperCell> added;
-    for (const PaperCell& cell : paper_cells()) {
-      const bool is_there = std::any_of(added.begin(), added.end(),
-                                        [&](const PaperCell& other) { return cell.is_same_run(other); });
-      if (is_there) continue;
-      added.push_back(cell);
+    for (const PaperCell& cell : distinct_runs(paper_cells())) {
       RenderOptions options = base_;
       options.program = cell.firmware(base_.program);
       add(cell.name(), scenes_.box, options);

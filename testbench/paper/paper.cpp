@@ -52,6 +52,14 @@ std::vector<PaperCell> paper_cells() {
   return cells;
 }
 
+std::vector<PaperCell> distinct_runs(const std::vector<PaperCell>& cells) {
+  std::vector<PaperCell> runs;
+  for (const PaperCell& cell : cells)
+    if (std::none_of(runs.begin(), runs.end(), [&](const PaperCell& run) { return cell.is_same_run(run); }))
+      runs.push_back(cell);
+  return runs;
+}
+
 std::vector<PaperCell> fitted_cells() {
   return {{kDoubleBufferedRow, Program::segments},
           {kUnbufferedRow, Program::segments},

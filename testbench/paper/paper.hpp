@@ -42,6 +42,9 @@ struct PaperCell {
 /// All 24 cells, row by row.
 std::vector<PaperCell> paper_cells();
 
+/// The first of all cells that one run measures, in their order: 18 of paper_cells().
+std::vector<PaperCell> distinct_runs(const std::vector<PaperCell>& cells);
+
 /// The cells that the preset `paper` was fitted to (`csx600 calibrate`); all others are predicted.
 std::vector<PaperCell> fitted_cells();
 bool is_fitted(const PaperCell& cell);

@@ -20,14 +20,7 @@ double seconds_per_million_segments(const Scene& scene, const RenderOptions& opt
 std::vector<double> run_paper_cells(const Scene& scene, const RenderOptions& options,
                                     const std::vector<PaperCell>& cells, int at_once,
                                     const std::function<void(double)>& done) {
-  std::vector<PaperCell> runs;
-  std::vector<std::size_t> run_of_cell;
-  for (const PaperCell& cell : cells) {
-    const auto run = std::find_if(runs.begin(), runs.end(),
-                                  [&](const PaperCell& other) { return cell.is_same_run(other); });
-    run_of_cell.push_back(std::size_t(run - runs.begin()));
-    if (run == runs.end()) runs.push_back(cell);
-  }
+  const std::vector<PaperCell> runs = distinct_runs(cells);
   std::vector<std::function<std::string()>> jobs;
   for (const PaperCell& run : runs) {
     RenderOptions of_run = options;
@@ -38,7 +31,11 @@ std::vector<double> run_paper_cells(const Scene& scene, const RenderOptions& opt
     if (done) done(finished / double(jobs.size()));
   });
   std::vector<double> seconds;
-  for (const std::size_t run : run_of_cell) seconds.push_back(Json::parse(results[run]).get<double>());
+  for (const PaperCell& cell : cells) {
+    const auto run = std::find_if(runs.begin(), runs.end(),
+                                  [&](const PaperCell& other) { return cell.is_same_run(other); });
+    seconds.push_back(Json::parse(results[std::size_t(run - runs.begin())]).get<double>());
+  }
   return seconds;
 }
 

@@ -9,6 +9,7 @@
 #include "model/config/address_map.hpp"
 #include "model/csx600.hpp"
 #include "model/hazards/hazard_checker.hpp"
+#include "testbench/machine/memory_overflow.hpp"
 #include "testbench/machine/recording_machine.hpp"
 #include "testbench/observe/observation.hpp"
 #include "testbench/plug_in/buffer_places.hpp"
@@ -34,8 +35,7 @@ auto with_plug_in_errors(const Firmware& firmware, Work&& work) {
   } catch (const plug_in::OptionError& error) {
     throw InputError(firmware.name() + ": " + error.what());
   } catch (const cn::PolyMemoryOverflow& error) {
-    const std::string map = error.map().substr(0, error.map().find_last_not_of('\n') + 1);
-    throw InputError(std::string(error.what()) + "; buffers of a PE:", map);
+    throw input_error_of(error);
   } catch (const plug_in::CheckFailed& error) {
     throw RunError(firmware.name() + ": " + error.what());
   } catch (const cn::MachineFault& fault) {

@@ -6,6 +6,7 @@
 
 #include "firmware/path_tracer/path_tracer.hpp"
 #include "model/hazards/hazard_checker.hpp"
+#include "testbench/machine/memory_overflow.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/run/results.hpp"
 #include "testbench/system/error.hpp"
@@ -21,8 +22,7 @@ auto with_input_errors(Work&& work) {
   } catch (const path_tracer::ProgramError& error) {
     throw InputError(error.what());
   } catch (const cn::PolyMemoryOverflow& error) {
-    const std::string map = error.map().substr(0, error.map().find_last_not_of('\n') + 1);
-    throw InputError(std::string(error.what()) + "; buffers of a PE:", map);
+    throw input_error_of(error);
   } catch (const cn::MachineFault& fault) {
     throw RunError(fault.what());
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "testbench/system/counter_random.hpp"
+#include "firmware/plug_in/random.hpp"
 
 namespace testbench {
 
@@ -12,7 +12,8 @@ SampleCounts counts_of(const MeanSamples& means, std::uint64_t seed) {
   const std::uint64_t pixels = means.size();
   SampleCounts counts(means.size());
   for (std::uint64_t pixel = 0; pixel < pixels; ++pixel)
-    counts[pixel] = static_cast<std::int32_t>(std::floor(means[pixel] + random_of(seed * pixels + pixel)));
+    counts[pixel] =
+        static_cast<std::int32_t>(std::floor(means[pixel] + plug_in::random_of(seed * pixels + pixel)));
   return counts;
 }
 

@@ -3,31 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbench/scene/triangle_bounds.hpp"
+
 namespace testbench {
 
 double largest_coordinate(const Scene& scene) {
-  double largest = 0.0;
-  for (const Triangle& triangle : scene.triangles)
-    for (const glm::dvec3& vertex : triangle.vertex)
-      largest = std::max({largest, std::abs(vertex.x), std::abs(vertex.y), std::abs(vertex.z)});
-  return largest;
+  const TriangleBounds bounds = bounds_of(scene.triangles);
+  const glm::dvec3 largest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+  return std::max({largest.x, largest.y, largest.z});
 }
 
 namespace {
 
 /// What is to be subtracted from all places: 0 along axes along which the scene is not far away.
 glm::dvec3 far_middle(const std::vector<Triangle>& triangles) {
-  if (triangles.empty()) return glm::dvec3(0.0);
-  glm::dvec3 lower = triangles[0].vertex[0];
-  glm::dvec3 upper = lower;
-  for (const Triangle& triangle : triangles)
-    for (const glm::dvec3& vertex : triangle.vertex) {
-      lower = glm::min(lower, vertex);
-      upper = glm::max(upper, vertex);
-    }
-  const glm::dvec3 sides = upper - lower;
+  const TriangleBounds bounds = bounds_of(triangles);
+  const glm::dvec3 sides = bounds.sides();
   const double longest = std::max({sides.x, sides.y, sides.z});
-  glm::dvec3 middle = lower + sides / 2.0;
+  glm::dvec3 middle = bounds.middle();
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::abs(middle[axis]) > 16.0 * longest)) middle[axis] = 0.0;
   return middle;

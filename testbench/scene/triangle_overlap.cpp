@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbench/scene/triangle_bounds.hpp"
+
 namespace testbench {
 namespace {
 
@@ -39,15 +41,9 @@ const glm::dvec3& farthest(const std::vector<glm::dvec3>& points, const Distance
 
 SceneSize size_of(const std::vector<Triangle>& triangles, double rounded_at) {
   if (triangles.empty()) return {};
-  glm::dvec3 lower = triangles[0].vertex[0];
-  glm::dvec3 upper = lower;
-  for (const Triangle& triangle : triangles)
-    for (const glm::dvec3& vertex : triangle.vertex) {
-      lower = glm::min(lower, vertex);
-      upper = glm::max(upper, vertex);
-    }
-  const glm::dvec3 most = glm::max(glm::abs(lower), glm::abs(upper));
-  const glm::dvec3 box = upper - lower;
+  const TriangleBounds bounds = bounds_of(triangles);
+  const glm::dvec3 most = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+  const glm::dvec3 box = bounds.sides();
   const double extent = std::hypot(box.x, box.y, box.z);
   return {extent, std::max({extent, most.x, most.y, most.z, rounded_at})};
 }

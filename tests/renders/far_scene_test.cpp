@@ -5,6 +5,7 @@
 #include "testbench/mono_image/mono_image.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/scene/normalise.hpp"
+#include "testbench/scene/triangle_bounds.hpp"
 #include "tests/support/native_paths.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/systemc_fixture.hpp"
@@ -34,14 +35,7 @@ void move_places(Scene& scene, Move&& move) {
 Scene centred(Scene scene) {
   const auto rounded = [](const glm::dvec3& place) { return glm::round(place * 0x1p28) * 0x1p-28; };
   move_places(scene, rounded);
-  glm::dvec3 lower(HUGE_VAL);
-  glm::dvec3 upper(-HUGE_VAL);
-  for (const testbench::Triangle& triangle : scene.triangles)
-    for (const glm::dvec3& vertex : triangle.vertex) {
-      lower = glm::min(lower, vertex);
-      upper = glm::max(upper, vertex);
-    }
-  const glm::dvec3 middle = (lower + upper) / 2.0;
+  const glm::dvec3 middle = testbench::bounds_of(scene.triangles).middle();
   move_places(scene, [&](const glm::dvec3& place) { return place - middle; });
   return scene;
 }

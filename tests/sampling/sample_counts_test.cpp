@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "testbench/system/counter_random.hpp"
+#include "firmware/plug_in/random.hpp"
 #include "tests/support/statistics.hpp"
 
 namespace sample_counts_test {
@@ -67,7 +67,7 @@ TEST(CounterRandom, IsUniform) {
   constexpr int kNumbers = 160000;
   std::vector<int> cells(kCells);
   for (std::uint64_t i = 0; i < kNumbers; ++i) {
-    const double value = testbench::random_of(i);
+    const double value = plug_in::random_of(i);
     ASSERT_TRUE(value >= 0 && value < 1);
     ++cells[std::size_t(value * kCells)];
   }

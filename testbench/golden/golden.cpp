@@ -40,44 +40,18 @@ Json statistics_of(const PlugInSettings& run) {
   return plug_in_statistics(*firmware, run.options, result);
 }
 
-using LightSurveys =
-    std::map<std::pair<std::string, path_tracer::LightSampling>, std::shared_ptr<const LightSurvey>>;
-
-LightSurveys::key_type survey_of(const GoldenRun& run) {
-  return {run.scene, run.options.program.light_sampling};
-}
-
-/// One survey for all runs of a scene.
-LightSurveys survey_lights_of(const GoldenGrid& grid, const GoldenScenes& scenes) {
-  LightSurveys surveys;
-  for (const GoldenRun& run : grid.runs) {
-    if (run.plug_in) continue;
-    std::shared_ptr<const LightSurvey>& survey = surveys[survey_of(run)];
-    if (!survey)
-      survey = std::make_shared<const LightSurvey>(
-          make_normal_light_survey(scenes.at(run.scene), run.options.program.light_sampling));
-  }
-  return surveys;
-}
-
-Json statistics_of(const GoldenRun& run, const Scene& scene,
-                   const std::shared_ptr<const LightSurvey>& light_survey) {
+Json statistics_of(const GoldenRun& run, const Scene& scene) {
   RenderOptions options = run.options;
-  options.light_survey = light_survey;
   options.program = built_for(scene, options.program);
   choose_tree(TriangleCount(scene), options.chip, run.given, options.program);
   const RenderResult result = render_on_chip(scene, options);
   return render_statistics({run.scene, options, false}, result);
 }
 
-Json statistics_of(const GoldenRun& run, const GoldenScenes& scenes, const LightSurveys& surveys) {
-  if (run.plug_in) return statistics_of(*run.plug_in);
-  return statistics_of(run, scenes.at(run.scene), surveys.at(survey_of(run)));
-}
-
-FlatStatistics kept_of(const GoldenRun& run, const GoldenScenes& scenes, const LightSurveys& surveys) {
+FlatStatistics kept_of(const GoldenRun& run, const GoldenScenes& scenes) {
   FlatStatistics kept;
-  for (auto& value : flatten(statistics_of(run, scenes, surveys)))
+  for (auto& value :
+       flatten(run.plug_in ? statistics_of(*run.plug_in) : statistics_of(run, scenes.at(run.scene))))
     if (is_kept(value.first)) kept.push_back(std::move(value));
   return kept;
 }
@@ -224,10 +198,8 @@ GoldenScenes load_golden_scenes(const GoldenGrid& grid, bool is_outside_allowed)
 
 GoldenTables run_golden(const GoldenGrid& grid, const GoldenScenes& scenes, int jobs,
                         const std::function<void(double)>& progress) {
-  const LightSurveys surveys = survey_lights_of(grid, scenes);
   std::vector<std::function<std::string()>> work;
-  for (const GoldenRun& run : grid.runs)
-    work.emplace_back([&] { return json_text(kept_of(run, scenes, surveys)); });
+  for (const GoldenRun& run : grid.runs) work.emplace_back([&] { return json_text(kept_of(run, scenes)); });
   const std::vector<std::string> results = run_in_processes(work, jobs, [&](int finished) {
     if (progress) progress(finished / double(work.size()));
   });

@@ -63,7 +63,7 @@ double reach_of(const Scene& scene) {
 /// Triangles, faces and planes as the image's parts need them.
 struct Triangles {
   const Scene& scene;
-  const CoincidentTriangles coincident{find_coincident_triangles(scene.triangles, scene.rounded_at)};
+  const CoincidentTriangles coincident{find_coincident_triangles(scene)};
   const std::vector<std::int32_t> faces{number_faces(scene.triangles, coincident)};
   const SceneLayers layers{scene, coincident, faces};
 
@@ -332,7 +332,7 @@ MonoImage make_normal_mono_image(const Scene& scene, int num_pes, const path_tra
 
 LightSurvey make_normal_light_survey(const Scene& scene, path_tracer::LightSampling sampling) {
   const Scene normal = normalised(scene);
-  const CoincidentTriangles coincident = find_coincident_triangles(normal.triangles);
+  const CoincidentTriangles coincident = find_coincident_triangles(normal);
   return survey_lights(normal, number_faces(normal.triangles, coincident), sampling);
 }
 

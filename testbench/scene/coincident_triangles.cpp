@@ -305,9 +305,7 @@ CoincidentTriangles numbered(JoinedSets& sets, std::size_t triangles) {
   return result;
 }
 
-}  // namespace
-
-CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles, double rounded_at) {
+CoincidentTriangles find_coincident(const std::vector<Triangle>& triangles, double rounded_at) {
   JoinedSets sets(triangles.size());
   if (triangles.size() < 2) return numbered(sets, triangles.size());
   const SceneSize size = size_of(triangles, rounded_at);
@@ -324,8 +322,18 @@ CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& trian
   return numbered(sets, triangles.size());
 }
 
+}  // namespace
+
+CoincidentTriangles find_coincident_triangles(const Scene& scene) {
+  return find_coincident(scene.triangles, scene.rounded_at);
+}
+
+CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles) {
+  return find_coincident(triangles, 0.0);
+}
+
 void order_coincident_triangles(Scene& scene, const std::string& file) {
-  const CoincidentTriangles found = find_coincident_triangles(scene.triangles, scene.rounded_at);
+  const CoincidentTriangles found = find_coincident_triangles(scene);
   scene.coincident_triangles = found.triangles;
   if (found.triangles == 0) return;
   scene.notes.add(

@@ -21,8 +21,9 @@ struct CoincidentTriangles {
 };
 
 /// Finds them in a time of about n log n.
-/// @param rounded_at Scene::rounded_at
-CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles, double rounded_at = 0);
+CoincidentTriangles find_coincident_triangles(const Scene& scene);
+/// The same of triangles that were never moved (Scene::rounded_at).
+CoincidentTriangles find_coincident_triangles(const std::vector<Triangle>& triangles);
 
 /// If triangles of the scene coincide, notes how many, and lets those that emit come first, in their order:
 /// of surfaces that are equally far along a ray and face it, the first in the scene is seen.

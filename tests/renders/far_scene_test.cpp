@@ -100,6 +100,8 @@ TEST_F(FarScene, SurfacesThatCoincideThereStillDo) {
   scene.corners = {};
   const testbench::MonoImage image = testbench::make_normal_mono_image(scene, 96, {});
   EXPECT_TRUE(image.layout.layers.any);
+  const testbench::LightSurvey survey = testbench::make_normal_light_survey(scene, {});
+  EXPECT_EQ(testbench::make_normal_mono_image(scene, 96, {}, &survey).bytes, image.bytes);
 }
 
 }  // namespace far_scene_test

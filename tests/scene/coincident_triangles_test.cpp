@@ -158,7 +158,7 @@ TEST(CoincidentTriangles, AreFoundWithoutAComparisonOfAllPairs) {
 }
 
 TEST(CoincidentTriangles, NoneAmongNone) {
-  EXPECT_TRUE(find_coincident_triangles({}).group.empty());
+  EXPECT_TRUE(find_coincident_triangles(std::vector<Triangle>{}).group.empty());
   EXPECT_EQ(find_coincident_triangles({Placement{}.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})}).triangles, 0u);
 }
 

@@ -49,7 +49,7 @@ class MonteCarloFirmware : public plug_in::Firmware {
   void run(cn::Machine& machine) override { MonteCarlo(machine, kernels_, problem()).run(); }
   void check() const override {
     double sum = 0;
-    for (std::size_t pe = 0; pe < sums_.size(); ++pe) sum += sums_[pe];
+    for (const double pe_sum : sums_) sum += pe_sum;
     const Payoff expected = expected_payoff(problem().option);
     const double standard_error = expected.deviation / std::sqrt(work().amount);
     const double mean = sum / work().amount;

@@ -9,6 +9,7 @@
 #include "model/config/address_map.hpp"
 #include "model/csx600.hpp"
 #include "model/hazards/hazard_checker.hpp"
+#include "model/time/run_until_idle.hpp"
 #include "testbench/machine/memory_overflow.hpp"
 #include "testbench/machine/recording_machine.hpp"
 #include "testbench/observe/observation.hpp"
@@ -134,7 +135,7 @@ class PlugInHost : public sc_core::sc_module {
 };
 
 void simulate(model::Csx600& chip, const PlugInHost& host) {
-  sc_core::sc_start();
+  model::run_until_idle();
   chip.control_unit.require_finished();
   if (!host.finished()) throw RunError("the firmware has ended, but the host has not");
 }

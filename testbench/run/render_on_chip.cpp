@@ -3,6 +3,7 @@
 #include <numeric>
 #include <string>
 
+#include "model/time/run_until_idle.hpp"
 #include "testbench/observe/observation.hpp"
 #include "testbench/run/host_pc.hpp"
 #include "testbench/run/render_job.hpp"
@@ -217,7 +218,7 @@ RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
                             const RenderProgress& progress) {
   return with_input_errors([&] {
     Board board(scene, options, progress);
-    sc_core::sc_start();
+    model::run_until_idle();
     board.require_finished();
     return board.finish();
   });

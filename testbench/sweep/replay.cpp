@@ -1,5 +1,6 @@
 #include "testbench/sweep/replay.hpp"
 
+#include "model/time/run_until_idle.hpp"
 #include "testbench/run/host_pc.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/simulator_time.hpp"
@@ -25,7 +26,7 @@ RenderResult replay_on_chip(const Recording& recording, const RenderOptions& opt
   chip.pio_engine.leave_data(true);
   chip.control_unit.load([&](cn::Machine& machine) { recording.stream.replay(machine); });
   try {
-    sc_core::sc_start();
+    model::run_until_idle();
     chip.control_unit.require_finished();
   } catch (const cn::MachineFault& fault) {
     throw RunError(fault.what());

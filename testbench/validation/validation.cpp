@@ -8,6 +8,7 @@
 #include "firmware/examples/firmwares.hpp"
 #include "firmware/examples/pio_sweep.hpp"
 #include "model/csx600.hpp"
+#include "model/time/run_until_idle.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/processes.hpp"
 #include "testbench/validation/example_runs.hpp"
@@ -41,7 +42,7 @@ class BareChip {
     chip_.control_unit.load(firmware);
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     chip_.control_unit.start();
-    sc_core::sc_start();
+    model::run_until_idle();
     try {
       chip_.control_unit.rethrow_failure();
     } catch (const cn::PolyMemoryOverflow& error) {

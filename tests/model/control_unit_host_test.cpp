@@ -237,7 +237,9 @@ class NoPio : public model::PioPort {
   std::uint64_t words_moved_before(Cycles) const override { return 0; }
 };
 
-TEST_F(ControlUnitHost, PointerToMonoMemoryIsGivenUpWhenTheMemoryTakesItBack) {
+class ControlUnitAlone : public test_support::SystemCFixture {};
+
+TEST_F(ControlUnitAlone, PointerToMonoMemoryIsGivenUpWhenTheMemoryTakesItBack) {
   const model::ChipConfig config = test_chip();
   const model::ClockDomain clock(config.chip.clock_hz);
   model::PeArray pe_array("pe_array", config);
@@ -246,7 +248,6 @@ TEST_F(ControlUnitHost, PointerToMonoMemoryIsGivenUpWhenTheMemoryTakesItBack) {
   NoPio no_pio;
   control_unit.pio.bind(no_pio);
   control_unit.mono_socket.bind(memory.socket);
-  chip.reset();
   control_unit.load([&](Machine& machine) {
     EXPECT_EQ(*machine.read_mono(cn::MonoPointer<std::uint8_t>{64}), 1);
     memory.move();

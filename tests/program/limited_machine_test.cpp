@@ -107,6 +107,9 @@ TEST_F(LimitedMachine, ASweepKeepsWhatItHasFinished) {
 }
 
 TEST_F(LimitedMachine, AFilmThatDoesNotFitIsOneLine) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer needs more address space than the limit";
+#endif
   const Limit limit(RLIMIT_AS, rlim_t{2} << 30);
   for (const Words& how : {Words{}, Words{"--native"}}) {
     Words arguments = {"render", kCornellBox, "--size", "16384x16384", "--samples", "1", "--png", "a.png"};

@@ -27,6 +27,8 @@ void add_commands(CLI::App& app) {
   testbench::add_validate_command(app);
   testbench::add_waves_command(app);
   testbench::add_sweep_command(app);
+  testbench::add_sensitivity_command(app);
+  testbench::add_estimate_command(app);
   testbench::add_report_command(app);
   testbench::add_stats_command(app);
   testbench::add_compare_command(app);

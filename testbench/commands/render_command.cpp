@@ -13,8 +13,8 @@
 #include "testbench/commands/wave_options.hpp"
 #include "testbench/film/black_film.hpp"
 #include "testbench/film/image_file.hpp"
-#include "testbench/mono_image/scene_features.hpp"
 #include "testbench/observe/observation.hpp"
+#include "testbench/run/program_choice.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/rank_render.hpp"
 #include "testbench/statistics/render_report.hpp"
@@ -85,15 +85,12 @@ RenderRequest RenderCommand::make_request() const {
 }
 
 std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& of) const {
-  if (firmware.given().count("light_candidates") == 0)
-    of.program.light_candidates = suited_light_candidates(loaded);
-  if (firmware.given().count("estimator") == 0)
-    of.program.estimator = suited_estimator(loaded, of.program.light_candidates);
-  of.program = built_for(loaded, of.program);
   path_tracer::ProgramConfig of_chip = of.program;
-  std::string reason = choose_tree(TriangleCount(loaded), of.chip, firmware.given(), of_chip);
+  std::string reason = choose_program(loaded, of.chip, firmware.given(), of_chip);
   if (native && !firmware_search && firmware.given().count("traversal") == 0 && !of.check_hazards) {
-    of.program.light_candidates = of_chip.light_candidates;  // for the chip's image
+    of_chip.traversal = of.program.traversal;
+    of_chip.tree = of.program.tree;
+    of.program = of_chip;
     search_natively(of);
     return "native: through the simulator's own tree";
   }

@@ -8,6 +8,7 @@
 #include "testbench/statistics/chip_config_json.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/statistics_file.hpp"
+#include "testbench/statistics/verdict.hpp"
 
 namespace testbench {
 namespace {
@@ -88,6 +89,7 @@ std::string plug_in_table(const plug_in::Firmware& firmware, const PlugInResult&
   row("exposed PIO", formatted("%.2f %% of the time", 100 * chip.exposed_pio_share()));
   row("DDR bandwidth", formatted("%.1f MB/s", chip.ddr_bytes_per_second() * 1e-6));
   row("energy", formatted("%.4g J", energy_of(chip).joules()));
+  row("verdict", verdict_of(chip).reason);
   return table;
 }
 

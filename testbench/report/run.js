@@ -153,12 +153,56 @@ function showCounters(run) {
            counters.map((counter) => [{ text: counter.name }, counter.value, { text: counter.unit }, { text: counter.meaning }]));
 }
 
+/// Which unit held the run up: busy shares, and the reason in a line.
+function showVerdict(chip) {
+  if (!chip.verdict || !chip.verdict.busy) return;
+  const section = addSection("Verdict", chip.verdict.reason, true);
+  addBars(section, Object.entries(chip.verdict.busy).map(([unit, share]) => [unit.replaceAll("_", " "), share]), percent);
+}
+
+/// What each parameter of the chip does to the run: a tornado chart of the largest effects, and a table of all.
+function showSensitivity(run) {
+  const found = run.sensitivity;
+  if (!found || !Array.isArray(found.parameters)) return;
+  const change = (changed) => changed[`${found.order}_change`];
+  const bars = [];
+  for (const parameter of found.parameters) {
+    const ran = parameter.runs.filter((changed) => !("error" in changed));
+    const numbers = ran.filter((changed) => changed.kind !== "alternative");
+    if (numbers.length) bars.push([`${parameter.name} ${parameter.value} → ${numbers.map((changed) => changed.value).join(", ")}`, numbers]);
+    for (const other of ran.filter((changed) => changed.kind === "alternative")) bars.push([`${parameter.name} → ${other.value}`, [other]]);
+  }
+  const effect = ([, changes]) => Math.max(...changes.map((changed) => Math.abs(change(changed))));
+  const shown = bars.filter((bar) => effect(bar) >= 0.0005).sort((a, b) => effect(b) - effect(a)).slice(0, 16).reverse();
+  const section = addSection("What to change", `Change of the ${found.order} if one parameter of the chip is another: numbers ${percent(found.share)} less and more, other choices`, true);
+  if (shown.length) {
+    const series = [["lower", "less"], ["higher", "more"], ["alternative", "another choice"]].map(([kind, name]) => ({
+      name, type: "bar", stack: kind, barGap: "-100%", barMaxWidth: 18,
+      data: shown.map(([, changes]) => { const one = changes.find((changed) => changed.kind === kind); return one ? change(one) : null; }) }));
+    const signed = (share) => (share > 0 ? "+" : "") + percent(share);
+    const chart = addChart(section, {
+      grid: { left: 24, right: 48, top: 32, bottom: 8, containLabel: true }, legend: { top: 0 },
+      tooltip: { trigger: "axis", axisPointer: { type: "shadow" },
+                 formatter: (items) => [items[0].name, ...items.filter((item) => item.value != null).map((item) => `${item.seriesName}: ${signed(item.value)}`)].join("<br>") },
+      xAxis: { type: "value", axisLabel: { formatter: (share) => `${+(100 * share).toFixed(1)} %`, hideOverlap: true } },
+      yAxis: { type: "category", data: shown.map(([name]) => name), axisLabel: { width: Math.min(340, document.body.clientWidth / 3), overflow: "truncate" }, axisLine: { onZero: false } },
+      series });
+    chart.getDom().style.height = `${90 + 26 * shown.length}px`;
+    chart.resize();
+  }
+  addTable(section, ["parameter", "is", "unit", "changed to", "time", "energy"], found.parameters.flatMap((parameter) => parameter.runs.map((changed) => [
+    { text: parameter.name }, { text: String(parameter.value) }, { text: parameter.unit }, { text: String(changed.value) },
+    ..."error" in changed ? [{ text: changed.error, class: "error" }, ""] : [percent(changed.time_change), percent(changed.energy_change)]])));
+}
+
 function showRun(run, image) {
   document.getElementById("subtitle").textContent =
     `${describeRun(run)}, ${run.machine === "native" ? "native: no time was simulated" : `chip ${run.chip_preset}`}`;
   const chip = run.chip;
   if (chip) showFigures(run, chip);
   else if ("segments" in run) addFigures([[forPeople(run.segments), "path segments"], [forPeople(run.rays), "rays"]]);
+  if (chip) showVerdict(chip);
+  showSensitivity(run);
   if (image) addSection("Image", `SHA-256 of its pixels ${run.image_sha256.slice(0, 16)}…`).append(element("img", { src: image, alt: "The image of this run" }));
   showCounters(run);
   if (!chip) return;

@@ -1,6 +1,7 @@
 #include "testbench/run/energy.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/roofline.hpp"
+#include "testbench/statistics/verdict.hpp"
 
 namespace testbench {
 namespace {
@@ -235,12 +236,33 @@ Counters<Chip> roofline_counters() {
        [](const Chip& c) { return Json(roofline_of(c).attainable_flops_per_second()); }}};
 }
 
+Json shares_of_units(const Chip& chip) {
+  Json shares = Json::object();
+  for (const UnitUse& use : verdict_of(chip).units) shares[std::string(use.name)] = use.share;
+  return shares;
+}
+
+Counters<Chip> verdict_counters() {
+  return {{{"verdict.busy.*", "-",
+            "share of the firmware's time in which a unit was busy: kernels; setup, turns of PEs and waits "
+            "for memory of "
+            "programmed I/O; bytes of the network's link; the DDR's data bus; the on-chip SRAM's port; the "
+            "control unit's "
+            "own work; the host link, with upload and download",
+            kDerived},
+           shares_of_units},
+          {{"verdict.critical", "-", "the unit that was busy longest", kDerived},
+           [](const Chip& c) { return Json(verdict_of(c).critical); }},
+          {{"verdict.reason", "-", "how it spent its time, and who waited for it", CounterKind::told},
+           [](const Chip& c) { return Json(verdict_of(c).reason); }}};
+}
+
 }  // namespace
 
 const Counters<Chip>& chip_counters() {
   static const Counters<Chip> counters = [] {
     Counters<Chip> all = unit_counters();
-    for (const Counters<Chip>& more : {energy_counters(), roofline_counters()})
+    for (const Counters<Chip>& more : {energy_counters(), roofline_counters(), verdict_counters()})
       all.insert(all.end(), more.begin(), more.end());
     return all;
   }();

@@ -21,6 +21,7 @@ inline constexpr std::array<std::string_view, 11> kCounterUnits = {
 enum class CounterKind : std::uint8_t {
   counted,  ///< by the chip, the firmware or the simulator
   derived,  ///< from others and from the chip's parameters
+  told,     ///< a sentence about them for people, which no comparison looks at
 };
 
 /// The section of what the simulator took: time and memory of this process. It differs from run to run.

@@ -16,6 +16,7 @@
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/roofline.hpp"
 #include "testbench/statistics/statistics_file.hpp"
+#include "testbench/statistics/verdict.hpp"
 
 namespace testbench {
 namespace {
@@ -63,6 +64,17 @@ void add_roofline_row(const ChipStatistics& chip, Rows& rows) {
                                     text(" at %.1f %%", 100 * roofline.nearest().share()));
 }
 
+/// "pe_array 43.0 %, pio 92.8 %, ...": units that did anything.
+void add_verdict_rows(const ChipStatistics& chip, Rows& rows) {
+  const Verdict verdict = verdict_of(chip);
+  std::string row;
+  for (const UnitUse& use : verdict.units)
+    if (use.share > 0)
+      row += (row.empty() ? "" : ", ") + std::string(use.name) + text(" %.1f %%", 100 * use.share);
+  rows.emplace_back("busy", row);
+  rows.emplace_back("verdict", verdict.reason + " (csx600 sensitivity: what a change does)");
+}
+
 /// "2 chips: 0.012 s and 61.2 % utilisation, ...": how evenly the work was divided.
 void add_board_row(const std::vector<ChipStatistics>& chips, Rows& rows) {
   std::string row = std::to_string(chips.size()) + " chips";
@@ -84,6 +96,7 @@ void add_chip_rows(const RenderResult& result, Rows& rows) {
   rows.emplace_back("DDR bandwidth", text("%.1f MB/s", chip.ddr_bytes_per_second() * 1e-6));
   add_energy_row(result, rows);
   add_roofline_row(chip, rows);
+  add_verdict_rows(chip, rows);
 }
 
 void add_simulator_rows(const RenderRequest& request, const RenderResult& result, Rows& rows) {

@@ -10,6 +10,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "testbench/statistics/counters.hpp"
+
 namespace testbench {
 namespace {
 
@@ -21,6 +23,8 @@ bool matches(const std::string& glob, const std::string& key) {
 }
 
 bool is_ignored(const std::string& key, const ComparisonRules& rules) {
+  const Counter* const counter = find_counter(key);
+  if (counter != nullptr && counter->kind == CounterKind::told) return true;
   return std::any_of(rules.ignore.begin(), rules.ignore.end(),
                      [&](const std::string& glob) { return matches(glob, key); });
 }

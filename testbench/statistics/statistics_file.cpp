@@ -130,13 +130,27 @@ const Schema& chip_schema() {
   return schema;
 }
 
+/// What `csx600 sensitivity` adds to a run's.
+const Schema& sensitivity_schema() {
+  static const Schema schema = {
+      {"sensitivity.order", JsonType::text, false},
+      {"sensitivity.parameters.*.name", JsonType::text, false},
+      {"sensitivity.parameters.*.value", JsonType::text, false},
+      {"sensitivity.parameters.*.runs.*.kind", JsonType::text, false},
+      {"sensitivity.parameters.*.runs.*.value", JsonType::text, false},
+      {"sensitivity.parameters.*.runs.*.time_change", JsonType::number, false},
+      {"sensitivity.parameters.*.runs.*.energy_change", JsonType::number, false},
+  };
+  return schema;
+}
+
 /// Every counter that is there is a number; some that are derived are names.
 Schema counter_schema() {
   Schema schema;
   for (const std::vector<Counter>* const counters : {&all_counters(), &all_work_counters()})
     for (const Counter& counter : *counters)
       schema.push_back({counter.key,
-                        counter.kind == CounterKind::derived ? JsonType::scalar : JsonType::number_or_none,
+                        counter.kind == CounterKind::counted ? JsonType::number_or_none : JsonType::scalar,
                         false});
   return schema;
 }
@@ -145,6 +159,7 @@ Schema counter_schema() {
 void require_statistics_types(const Json& json, const std::string& text, const std::string& origin) {
   require_schema(json, is_of_plug_in(json) ? plug_in_schema() : run_schema(), text, origin);
   if (json["machine"] != "native") require_schema(json, chip_schema(), text, origin);
+  require_schema(json, sensitivity_schema(), text, origin);
   static const Schema counters = counter_schema();
   require_schema(json, counters, text, origin);
 }
@@ -177,7 +192,7 @@ Json parse_statistics(const std::string& text, const std::string& origin) {
   const std::string format = has(json, "format") ? value_of(json["format"]) : "no format";
   require_statistics_format(format, origin);
   require_current_keys(origin, flatten(json));
-  require_counters(json, origin, true);
+  require_counters(json, origin, json.contains(kSimulatorSection));
   require_statistics_types(json, text, origin);
   return json;
 }

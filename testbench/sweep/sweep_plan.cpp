@@ -3,16 +3,6 @@
 #include <algorithm>
 
 namespace testbench {
-namespace {
-
-/// A recording is the stream of one array.
-bool is_of_one_array(const SweepPoint& point) {
-  const model::ChipConfig& chip = chip_of(point);
-  return chip.board.chips * chip.chip.arrays == 1;
-}
-
-}  // namespace
-
 SweepPlan::SweepPlan(const Sweep& sweep, const std::vector<std::size_t>& left, bool in_full) {
   std::map<std::string, std::size_t> number_of;
   for (const std::size_t i : left) {
@@ -22,7 +12,7 @@ SweepPlan::SweepPlan(const Sweep& sweep, const std::vector<std::size_t>& left, b
   }
   for (Stream& stream : streams_)
     stream.replays =
-        !in_full && stream.left.size() > 1 && is_of_one_array(sweep.points()[stream.left.front()]);
+        !in_full && stream.left.size() > 1 && can_be_replayed(sweep.points()[stream.left.front()]);
 }
 
 /// The server's own; else the one with the most points for each of those who would share it.

@@ -5,6 +5,7 @@
 
 #include "testbench/film/film_size.hpp"
 #include "testbench/mono_image/mono_image.hpp"
+#include "testbench/run/program_choice.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
@@ -37,6 +38,15 @@ std::string scene_digest(const Scene& scene) {
     seen.append(reinterpret_cast<const char*>(&outside), sizeof(outside));
   }
   return sha256(seen);
+}
+
+/// The firmware's options that the settings name.
+GivenOptions given_options(const std::vector<Setting>& settings) {
+  const std::string prefix = "firmware.";
+  GivenOptions given;
+  for (const Setting& setting : settings)
+    if (setting.key.rfind(prefix, 0) == 0) given.insert(setting.key.substr(prefix.size()));
+  return given;
 }
 
 }  // namespace
@@ -74,34 +84,43 @@ SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
   }
   const auto names_firmware = [](const Setting& setting) { return setting.key == kFirmwareKey; };
   const auto firmware = std::find_if(settings.begin(), settings.end(), names_firmware);
-  std::optional<RunSettings> render;
-  std::optional<PlugInSettings> plug_in;
-  try {
-    if (firmware == settings.end()) {
-      render = make_settings(settings);
-    } else {
-      plug_in = make_plug_in_settings(libraries_.at(firmware->value), settings);
-    }
-  } catch (const InputError& error) {
+  const auto fail = [&](const InputError& error) {
     point.error = error.what();
     std::string inputs;
     for (const Setting& setting : settings) inputs += setting.key + " = " + setting.value + "\n";
     point.id = short_digest(inputs);
     return point;
+  };
+  std::optional<RunSettings> render;
+  try {
+    if (firmware != settings.end())
+      set_run(point, make_plug_in_settings(libraries_.at(firmware->value), settings));
+    else
+      render = make_settings(settings);
+  } catch (const InputError& error) {
+    return fail(error);
   }
-  render ? set_run(point, *render) : set_run(point, std::move(*plug_in));
+  if (render) {
+    LoadedScene& scene = scene_of(*render);  // what it throws is of every point
+    try {
+      set_run(point, std::move(*render), scene, given_options(settings));
+    } catch (const InputError& error) {
+      return fail(error);
+    }
+  }
   point.audited = is_audited(point.id, file);
   return point;
 }
 
-void Sweep::set_run(SweepPoint& point, const RunSettings& run) {
-  LoadedScene& loaded = scene_of(run);
+void Sweep::set_run(SweepPoint& point, RunSettings run, LoadedScene& loaded, const GivenOptions& given) {
+  RenderRequest request{run.scene, {}, false};
+  request.traversal_reason = choose_program(loaded.scene, run.options.chip, given, run.options.program);
   const path_tracer::LightSampling sampling = run.options.program.light_sampling;
   std::shared_ptr<const LightSurvey>& survey = loaded.light_surveys[sampling];
   if (!survey) survey = std::make_shared<const LightSurvey>(make_normal_light_survey(loaded.scene, sampling));
-  RenderOptions options = run.options;
-  options.light_survey = survey;
-  point.run = RenderPoint{{run.scene, options, false}, &loaded.scene};
+  request.options = run.options;
+  request.options.light_survey = survey;
+  point.run = RenderPoint{request, &loaded.scene};
   point.id = short_digest(all_inputs(run) + loaded.digest);
   point.stream = short_digest(stream_inputs(run) + loaded.digest);
 }
@@ -157,6 +176,11 @@ Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
 const model::ChipConfig& chip_of(const SweepPoint& point) {
   if (const auto* const render = std::get_if<RenderPoint>(&point.run)) return render->request.options.chip;
   return std::get<PlugInSettings>(point.run).options.chip;
+}
+
+bool can_be_replayed(const SweepPoint& point) {
+  const model::ChipConfig& chip = chip_of(point);
+  return chip.board.chips * chip.chip.arrays == 1;
 }
 
 std::string describe_point(const Sweep& sweep, const SweepPoint& point) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "testbench/plug_in/plug_in_settings.hpp"
+#include "testbench/run/traversal_choice.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/sweep/sweep_file.hpp"
 
@@ -54,7 +55,8 @@ class Sweep {
   /// Loads the firmwares that the file names and checks every value of their options.
   void load_libraries(const SweepFile& file);
   SweepPoint make_point(const SweepFile& file, std::uint64_t number);
-  void set_run(SweepPoint& point, const RunSettings& run);
+  /// @param given options of the firmware that the sweep sets; the others are chosen
+  static void set_run(SweepPoint& point, RunSettings run, LoadedScene& loaded, const GivenOptions& given);
   static void set_run(SweepPoint& point, PlugInSettings&& run);
   LoadedScene& scene_of(const RunSettings& run);
 
@@ -70,6 +72,9 @@ class Sweep {
 
 /// The chip that a point runs on.
 const model::ChipConfig& chip_of(const SweepPoint& point);
+
+/// Whether a recording of the point tells its time: a recording is the stream of one array.
+bool can_be_replayed(const SweepPoint& point);
 
 /// "firmware.n=2, pio.setup_cycles=150"
 std::string describe_point(const Sweep& sweep, const SweepPoint& point);

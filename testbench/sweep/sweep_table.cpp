@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "testbench/files/csv.hpp"
+#include "testbench/run/program_choice.hpp"
 #include "testbench/statistics/json_file.hpp"
 
 namespace testbench {
@@ -87,6 +88,21 @@ Json results_of(const Json& statistics) {
   return results;
 }
 
+/// The options of the firmware that the sweep left to choose_program(), as it chose them.
+Json chosen_of(const Sweep& sweep, const Json& statistics) {
+  Json chosen = Json::object();
+  if (!statistics.contains("rays")) return chosen;
+  const auto& keys = sweep.keys();
+  for (const char* const name : kChosenOptions) {
+    const std::string key = std::string("firmware.") + name;
+    const bool is_on_axis = std::find(keys.begin(), keys.end(), key) != keys.end();
+    const bool is_in_base = std::any_of(sweep.base().begin(), sweep.base().end(),
+                                        [&](const Setting& setting) { return setting.key == key; });
+    if (!is_on_axis && !is_in_base) chosen[key] = statistics["firmware"][name];
+  }
+  return chosen;
+}
+
 Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
   Json json = {{"inputs", Json::object()}};
   for (std::size_t i = 0; i < point.inputs.size(); ++i)
@@ -95,6 +111,8 @@ Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
   if (line == nullptr) return json;
   if (line->contains("error")) json["error"] = (*line)["error"];
   if (!line->contains("statistics")) return json;
+  if (Json chosen = chosen_of(sweep, (*line)["statistics"]); !chosen.empty())
+    json["chosen"] = std::move(chosen);
   const model::ChipConfig& chip = chip_of(point);
   json["results"] = results_of((*line)["statistics"]);
   json["results"]["total_sram_bytes"] = std::int64_t{chip.chip.pes} * chip.poly.sram_bytes;
@@ -103,6 +121,22 @@ Json point_json(const Sweep& sweep, const SweepPoint& point, const Json* line) {
 
 std::string field(const Json& value) {
   return value.is_string() ? csv_text(value.get<std::string>()) : json_text(value);
+}
+
+/// The names below a section of the points, each once, in the order in which they come.
+std::vector<std::string> columns_of(const Json& sweep, const char* section) {
+  std::vector<std::string> names;
+  std::set<std::string> seen;
+  for (const Json& point : sweep["points"])
+    if (point.contains(section))
+      for (const auto& [name, value] : point[section].items())
+        if (seen.insert(name).second) names.push_back(name);
+  return names;
+}
+
+/// "" where the point has none.
+std::string cell(const Json& point, const char* section, const std::string& name) {
+  return point.contains(section) && point[section].contains(name) ? field(point[section][name]) : "";
 }
 
 }  // namespace
@@ -126,24 +160,19 @@ Json sweep_json(const Sweep& sweep, const PointStore& store) {
 }
 
 std::string sweep_csv(const Json& sweep) {
-  std::vector<std::string> names;
-  std::set<std::string> seen;
-  for (const Json& point : sweep["points"])
-    if (point.contains("results"))
-      for (const auto& [name, value] : point["results"].items())
-        if (seen.insert(name).second) names.push_back(name);
+  const std::vector<std::string> chosen = columns_of(sweep, "chosen");
+  const std::vector<std::string> names = columns_of(sweep, "results");
   std::ostringstream csv;
   for (const Json& key : sweep["keys"]) csv << field(key) << ',';
   csv << "status,error";
+  for (const std::string& name : chosen) csv << ',' << field(name);
   for (const std::string& name : names) csv << ',' << field(name);
   csv << '\n';
   for (const Json& point : sweep["points"]) {
     for (const auto& [key, value] : point["inputs"].items()) csv << field(value) << ',';
     csv << field(point["status"]) << ',' << (point.contains("error") ? field(point["error"]) : "");
-    for (const std::string& name : names) {
-      csv << ',';
-      if (point.contains("results") && point["results"].contains(name)) csv << point["results"][name].dump();
-    }
+    for (const std::string& name : chosen) csv << ',' << cell(point, "chosen", name);
+    for (const std::string& name : names) csv << ',' << cell(point, "results", name);
     csv << '\n';
   }
   return csv.str();

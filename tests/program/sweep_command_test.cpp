@@ -63,6 +63,28 @@ TEST_F(SweepCommand, ReplayedPointsEqualFullOnesInEveryColumn) {
             sweep["points"][6]["results"]["simulated_cycles"]);
 }
 
+TEST_F(SweepCommand, ChoosesWhatRenderChoosesAndSaysSo) {
+  ASSERT_EQ(run({"scene", "blob", "--triangles", "2000", "-o", "blob"}).exit_code, 0);
+  write("s.toml",
+        "scene = \"blob\"\nsize = \"8x6\"\nsamples = 1\nfirmware.node_width = 4\n[[axis]]\n"
+        "chip.pes = [32, 96]\n");
+  ASSERT_EQ(run({"sweep", "s.toml", "-o", "out"}).exit_code, 0);
+  const Json points = Json::parse(read("out/sweep.json"))["points"];
+  for (const Json& point : points) {
+    const std::string pes = std::to_string(point["inputs"]["chip.pes"].get<int>());
+    ASSERT_EQ(run({"render", "blob", "--size", "8x6", "--samples", "1", "--node-width", "4", "--set",
+                   "chip.pes=" + pes, "--stats", "render.json"})
+                  .exit_code,
+              0);
+    const Json rendered = Json::parse(read("render.json"));
+    EXPECT_EQ(rendered["firmware"]["traversal"], "refill");
+    EXPECT_EQ(point["chosen"]["firmware.traversal"], "refill");
+    EXPECT_FALSE(point["chosen"].contains("firmware.node_width"));
+    EXPECT_EQ(point["results"]["simulated_cycles"], rendered["simulated_cycles"]) << pes;
+  }
+  EXPECT_NE(lines("out/sweep.csv")[0].find(",firmware.traversal,"), std::string::npos);
+}
+
 TEST_F(SweepCommand, GoesOnAfterAKillAndComputesNothingTwice) {
   write("s.toml",
         "scene = \"" CSX600_SCENES_DIR

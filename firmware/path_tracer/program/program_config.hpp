@@ -57,6 +57,14 @@ enum class Traversal : std::uint8_t {
   shared_treelets,
 };
 
+/// How a stage's data go from one kernel to the next.
+enum class Execution : std::uint8_t {
+  mtap,  ///< PEs keep what the next kernel needs; the PE-to-PE path numbers and compacts (paper, section 4)
+  /// As on a stream processor (Purcell, "Ray Tracing on a Stream Processor", PhD thesis, Stanford 2004): each
+  /// kernel reads its streams from mono memory and writes all results back.
+  stream,
+};
+
 /// Which arrays of the scene the firmware copies to the memory on the chip, as it starts.
 enum class Scratchpad : std::uint8_t {
   none,
@@ -79,6 +87,7 @@ inline constexpr int kVerticesPerLoad = 4;
 struct ProgramConfig {
   Features features;  ///< of the scene; PathTracer takes them from the layout
   Program program = Program::full;
+  Execution execution = Execution::mtap;
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
@@ -107,6 +116,7 @@ struct ProgramConfig {
   TreeShape tree;
 
   bool uses_tree() const { return traversal != Traversal::brute_force; }
+  bool is_stream() const { return execution == Execution::stream; }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
   bool casts_shadow_rays() const { return program != Program::segments && features.lights.any(); }

@@ -134,6 +134,10 @@ Options bins() {
   return {choice<&ProgramConfig::program>(
               "program", Program::full, kProgramNames,
               "what is timed: path segments; with a shadow ray each; with the radiance of finished paths"),
+          choice<&ProgramConfig::execution>(
+              "execution", Execution::mtap, kExecutionNames,
+              "mtap: PEs keep data between kernels and number each other; stream: as on a stream processor, "
+              "each kernel reads from mono memory and writes all results back"),
           integer<&ProgramConfig::n>("n", "blocks", 1, {0, kMaxBuffers},
                                      "blocks loaded ahead and saved behind; 0: none"),
           {"buffer", "-", std::string("both"), Names(kBufferNames.begin(), kBufferNames.end()),

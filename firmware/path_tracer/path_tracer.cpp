@@ -12,17 +12,18 @@ namespace {
 constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
-  return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
-                   config.is_stream() ? std::max(StreamPathStage::load_bytes(config), ScanStage::kLoadBytes) : 0,
-                   config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
+  return std::max(
+      {RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
+       config.is_stream() ? std::max(StreamPathStage::load_bytes(config), ScanStage::kLoadBytes) : 0,
+       config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  return std::max({RayStage::save_bytes(config), IntersectionStage::save_bytes(config),
-                   PathStage::save_bytes(config),
-                   config.is_stream() ? std::max(StreamPathStage::save_bytes(config), ScanStage::kSaveBytes) : 0,
-                   config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
-                   config.uses_tree() ? TreeStage::save_bytes(config) : 0});
+  return std::max(
+      {RayStage::save_bytes(config), IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
+       config.is_stream() ? std::max(StreamPathStage::save_bytes(config), ScanStage::kSaveBytes) : 0,
+       config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
+       config.uses_tree() ? TreeStage::save_bytes(config) : 0});
 }
 
 ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
@@ -113,7 +114,8 @@ void PathTracer::run(const Progress& progress) {
 
 void PathTracer::fill_bins() {
   for (int block = 0; block < config_.bin_blocks && path_stage_->camera_rays().remaining() > 0; ++block) {
-    steps_.run_without_loads(*path_stage_, block, [&](std::uint64_t step) { path_stage_->fill(step, block); });
+    steps_.run_without_loads(*path_stage_, block,
+                             [&](std::uint64_t step) { path_stage_->fill(step, block); });
     report_fill(block);
     take_into_next_pass(block);
   }

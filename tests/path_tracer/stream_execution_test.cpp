@@ -66,7 +66,8 @@ struct TracedPaths {
   int forgotten = 0;
 };
 
-TracedPaths trace(const testbench::Scene& scene, const ProgramConfig& config, int num_pes, bool forgets = false) {
+TracedPaths trace(const testbench::Scene& scene, const ProgramConfig& config, int num_pes,
+                  bool forgets = false) {
   const testbench::MonoImage image = testbench::make_mono_image(scene, num_pes, config);
   ForgetfulMachine machine(num_pes, image.layout.total_bytes, forgets, config.program);
   std::memcpy(machine.mono(), image.bytes.data(), image.bytes.size());
@@ -166,9 +167,10 @@ TEST(StreamExecution, RefusesWhatNeedsTheArray) {
   EXPECT_EQ(error_of(), "traversal: found refill, allowed is brute_force with execution stream");
   config.traversal = path_tracer::Traversal::brute_force;
   config.shading = path_tracer::Shading::material_bins;
-  EXPECT_EQ(error_of(),
-            "shading: found material_bins, allowed is every_lobe or present_lobes with execution stream, which "
-            "sorts no hits");
+  EXPECT_EQ(
+      error_of(),
+      "shading: found material_bins, allowed is every_lobe or present_lobes with execution stream, which "
+      "sorts no hits");
 }
 
 TEST(ScanLevels, EndInASingleWord) {

@@ -49,8 +49,8 @@ cn::PolyField<std::uint64_t> word_behind(cn::PolyField<std::uint64_t> first, int
 /// Returns a PE's word; 0 if it lies beyond the level's end.
 poly<std::uint64_t> scanned_word(const ScanArguments& arguments, int i) {
   const poly<std::int32_t> number = (cn::pe_num() + arguments.first_group) * kScanRadix + i;
-  return cn::select(number < poly<std::int32_t>(arguments.words_here),
-                    word_behind(arguments.words, i).read(), poly<std::uint64_t>(0u));
+  return cn::select(number < poly<std::int32_t>(arguments.words_here), word_behind(arguments.words, i).read(),
+                    poly<std::uint64_t>(0u));
 }
 
 void scan_up(const ScanArguments& arguments) {

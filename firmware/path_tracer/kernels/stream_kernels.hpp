@@ -45,11 +45,12 @@ struct PackFinishedArguments {
 /// One level of the scan: each PE has kScanRadix words that lie side by side.
 struct ScanArguments {
   cn::PolyField<std::uint64_t> words{};  ///< the first of kScanRadix
-  int first_group = 0;          ///< the first PE's words, in kScanRadix
-  std::int32_t words_here = 0;  ///< of the level; those beyond count as 0
-  cn::PolyField<std::uint64_t> sum{};  ///< up: of the words; down: of all words before them
-  bool starts_at_zero = false;         ///< down: there is none before them
-  cn::PolyField<std::uint64_t> sums_before{};  ///< down, the first of kScanRadix: for each word, of all before
+  int first_group = 0;                   ///< the first PE's words, in kScanRadix
+  std::int32_t words_here = 0;           ///< of the level; those beyond count as 0
+  cn::PolyField<std::uint64_t> sum{};    ///< up: of the words; down: of all words before them
+  bool starts_at_zero = false;           ///< down: there is none before them
+  cn::PolyField<std::uint64_t>
+      sums_before{};  ///< down, the first of kScanRadix: for each word, of all before
 };
 
 struct StreamKernels {

@@ -14,9 +14,9 @@ PassRadiance::PassRadiance(const StageContext& context, TransferRing& path_saves
     : context_(context),
       path_saves_(path_saves),
       stage_(context.config.is_stream() ? nullptr : std::make_unique<RadianceStage>(context)),
-      stream_stage_(context.config.is_stream() ? std::make_unique<StreamRadianceStage>(
-                                                     context, load_buffers(context.config))
-                                               : nullptr),
+      stream_stage_(context.config.is_stream()
+                        ? std::make_unique<StreamRadianceStage>(context, load_buffers(context.config))
+                        : nullptr),
       steps_(context.machine, {context.loads, context.saves, load_buffers(context.config)}),
       results_(context.machine, context.layout) {}
 

@@ -18,8 +18,10 @@ SlotStates::SlotStates(const StageContext& context)
       first_(context.layout.slot_states),
       buffers_loads_(context.config.buffers_loads()),
       buffers_saves_(context.config.buffers_saves()),
-      ring_(machine_, "slot state",
-            {record_steps(context.config) + context.config.save_buffers() - 1, int{sizeof(SlotState)}, false}) {}
+      ring_(
+          machine_, "slot state",
+          {record_steps(context.config) + context.config.save_buffers() - 1, int{sizeof(SlotState)}, false}) {
+}
 
 cn::MonoPlaces SlotStates::places(int block) const {
   const auto first_slot = std::uint64_t(block) * std::uint64_t(machine_.num_pes());
@@ -42,8 +44,7 @@ void SlotStates::load(std::uint64_t step, int block) {
 void SlotStates::recall(std::uint64_t step, int block) {
   ring_.wait(step);
   point_to(step, block);
-  machine_.run(kernels_.stream().recall_slots,
-               RecallSlotsArguments{state(step), conditions_of(slots(block))},
+  machine_.run(kernels_.stream().recall_slots, RecallSlotsArguments{state(step), conditions_of(slots(block))},
                LaneMask::first(machine_.num_pes()));
 }
 

@@ -5,7 +5,9 @@
 namespace path_tracer {
 
 StreamPathStage::StreamPathStage(const StageContext& context, RayStore& rays, const Work& work)
-    : PathStage(context, rays, work), append_stage_(context, *this), place_of_block_(context.bins.blocks.size()) {}
+    : PathStage(context, rays, work),
+      append_stage_(context, *this),
+      place_of_block_(context.bins.blocks.size()) {}
 
 void StreamPathStage::number_blocks(const std::vector<int>& blocks) {
   int place = 0;

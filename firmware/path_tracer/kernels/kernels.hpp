@@ -249,6 +249,8 @@ struct FoldArguments {
 };
 
 struct PacketKernels;
+struct LargePacketKernels;
+struct RayStreamKernels;
 struct StreamKernels;
 
 struct Kernels {
@@ -273,6 +275,8 @@ struct Kernels {
   cn::Kernel<FlagArguments> flag;
   const TraversalKernels& (*traversal)();  ///< of the same level, as the others
   const PacketKernels& (*packet)();
+  const LargePacketKernels& (*large_packet)();
+  const RayStreamKernels& (*ray_stream)();
   const StreamKernels& (*stream)();
 };
 

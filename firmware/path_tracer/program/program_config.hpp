@@ -55,6 +55,9 @@ enum class Traversal : std::uint8_t {
   packets,
   /// Through a tree of which a block of rays shares the piece that all of them need.
   shared_treelets,
+  // Through a tree that the control unit traverses for several blocks of rays at once:
+  large_packets,  ///< culled by the interval of all rays, then tested from the first active block on
+  ray_streams,    ///< of which each PE filters the rays that are active in a node
 };
 
 /// How a stage's data go from one kernel to the next.
@@ -75,6 +78,7 @@ enum class Scratchpad : std::uint8_t {
 
 inline constexpr int kMaxBuffers = 8;
 inline constexpr int kMaxLightCandidates = 8;
+inline constexpr int kMaxPacketBlocks = 16;
 
 /// Limits far beyond what fits the chip; they keep slot numbers within 32 bits.
 inline constexpr int kMaxBinBlocks = 65536;
@@ -113,10 +117,16 @@ struct ProgramConfig {
   int pixel_stride = 1;
   Scratchpad scratchpad = Scratchpad::none;
   Traversal traversal = Traversal::brute_force;
+  int packet_blocks = 8;  ///< blocks of rays in a large packet or a ray stream
   TreeShape tree;
 
   bool uses_tree() const { return traversal != Traversal::brute_force; }
   bool is_stream() const { return execution == Execution::stream; }
+  /// Whether the control unit traverses the tree, so that PEs load none of it.
+  bool uses_packets() const {
+    return traversal == Traversal::packets || traversal == Traversal::large_packets ||
+           traversal == Traversal::ray_streams;
+  }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
   bool casts_shadow_rays() const { return program != Program::segments && features.lights.any(); }

@@ -69,14 +69,15 @@ void meet(const MeetArguments& arguments) {
   for (int i = 0; i < node.children; ++i) cn::keep((key[i] == first) & meets_any, arguments.enters_first[i]);
 }
 
-/// The same numbers as in `meet`.
+/// The same numbers as in `meet`, the axes side by side.
 void meet_child(const MeetChildArguments& arguments) {
-  const Point3 origin = arguments.record.get(&TraversalRecord::origin);
-  const Direction3 scale = arguments.packet.get(&PacketRecord::minus_inverse);
-  const Direction3 a = (origin - arguments.lower) * scale;
-  const Direction3 b = (origin - arguments.upper) * scale;
-  const poly<double> entry = from_origin(cn::min(a.x, b.x), cn::min(a.y, b.y), cn::min(a.z, b.z));
-  const poly<double> exit = cn::min(cn::min(cn::max(a.x, b.x), cn::max(a.y, b.y)), cn::max(a.z, b.z));
+  const auto side_by_side = [](const vec3<poly<double>>& v) { return poly4<double>{v.x, v.y, v.z, v.z}; };
+  const poly4<double> origin = side_by_side(arguments.record.get(&TraversalRecord::origin));
+  const poly4<double> scale = side_by_side(arguments.packet.get(&PacketRecord::minus_inverse));
+  const poly4<double> a = (origin - arguments.lower) * scale;
+  const poly4<double> b = (origin - arguments.upper) * scale;
+  const poly<double> entry = from_origin(cn::min(a[0], b[0]), cn::min(a[1], b[1]), cn::min(a[2], b[2]));
+  const poly<double> exit = cn::min(cn::min(cn::max(a[0], b[0]), cn::max(a[1], b[1])), cn::max(a[2], b[2]));
   cn::keep((entry <= exit) & (signed_high_word(entry) <= arguments.packet.get(&PacketRecord::limit)),
            *arguments.meets);
 }

@@ -38,8 +38,8 @@ struct MeetArguments {
 struct MeetChildArguments {
   PolyPointer<TraversalRecord> record;
   PolyPointer<PacketRecord> packet;
-  vec3<double> lower{};
-  vec3<double> upper{};
+  cn::mono4<double> lower{};  ///< by axis, the last one twice
+  cn::mono4<double> upper{};
   LaneMask* meets = nullptr;
 };
 

@@ -84,9 +84,10 @@ void LargePacketStage::visit(const Entry& entry, int blocks) {
   for (const VotedChild& next : children) {
     const MonoNode::Four& four = node.four[next.child / 4];
     const auto i = static_cast<std::size_t>(next.child % 4);
-    stack_.push_back({PackedReference::unpack(node.reference[next.child]), first_block[next.child],
-                      vec3<double>{four.lower[0][i], four.lower[1][i], four.lower[2][i]},
-                      vec3<double>{four.upper[0][i], four.upper[1][i], four.upper[2][i]}});
+    stack_.push_back({PackedReference::unpack(node.reference[next.child]),
+                      first_block[next.child],
+                      {four.lower[0][i], four.lower[1][i], four.lower[2][i], four.lower[2][i]},
+                      {four.upper[0][i], four.upper[1][i], four.upper[2][i], four.upper[2][i]}});
   }
 }
 

@@ -22,9 +22,9 @@ class LargePacketStage : public PacketWalkStage {
   /// A node or leaf that the packet has still to visit, on the control unit's stack.
   struct Entry {
     ChildReference reference;
-    int first_block = 0;  ///< that is active: none before it has a ray that meets the box
-    vec3<double> lower{};
-    vec3<double> upper{};
+    int first_block = 0;        ///< that is active: none before it has a ray that meets the box
+    cn::mono4<double> lower{};  ///< by axis, the last one twice
+    cn::mono4<double> upper{};
   };
   void take_bounds();
   void visit(const Entry& entry, int blocks);

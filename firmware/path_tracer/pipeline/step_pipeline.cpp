@@ -85,11 +85,12 @@ void StepPipeline::wait_for_saves() {
 
 void StepPipeline::run_without_loads(Stage& stage, int block,
                                      const std::function<void(std::uint64_t step)>& process) {
-  const Step step{&stage, block, next_number_++};
-  buffers_.saves.wait(step.number);
+  const std::uint64_t number = next_number_++;
+  buffers_.saves.wait(number);
   label(stage, block);
-  if (loads_slot_states(step)) buffers_.slot_states->claim(step.number, block);
-  process(step.number);
+  const Step step{&stage, block, number};
+  if (loads_slot_states(step)) buffers_.slot_states->claim(number, block);
+  process(number);
   save(step);
 }
 

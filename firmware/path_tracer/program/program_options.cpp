@@ -207,8 +207,9 @@ Options tree() {
       chosen("what the scene and the chip make fastest",
              choice<&ProgramConfig::traversal>("traversal", Traversal::brute_force, kTraversalNames,
                                                "how rays find triangles")),
-      integer<&ProgramConfig::packet_blocks>("packet_blocks", "blocks", 8, {1, kMaxPacketBlocks},
-                                             "blocks of rays in a large packet or a ray stream"),
+      chosen("4 in a large packet, 16 in a ray stream, fewer if they do not fit",
+             integer<&ProgramConfig::packet_blocks>("packet_blocks", "blocks", 8, {1, kMaxPacketBlocks},
+                                                    "blocks of rays in a large packet or a ray stream")),
       chosen("what the traversal makes fastest",
              choice<shape, layout, &NodeLayout::format>("node_format", NodeFormat::fp32, kNodeFormatNames,
                                                         "boxes of the tree; quantised8 needs 4 or 8 "

@@ -20,8 +20,10 @@ namespace {
 using Json = nlohmann::json;
 using path_tracer::Traversal;
 
-/// As many rays are under way in all at every width.
+/// As many rays are under way in all at every width from 16 on. For narrower arrays a PE has no room for the
+/// addresses that it keeps for each block.
 constexpr int kSlots = 1536;
+constexpr int kMostBlocks = 96;
 
 /// Lengths of paths whose runs tell the costs: a segment is the difference to paths one shorter.
 constexpr int kLengths[] = {1, 2, 3, 5, 6};
@@ -90,7 +92,7 @@ std::vector<RenderOptions> runs_of_row(const RivalCosts& row, const Scene& scene
     throw InputError(error.what());
   }
   options.program.program = path_tracer::Program::segments;
-  options.program.bin_blocks = std::max(2, kSlots / row.width);
+  options.program.bin_blocks = std::clamp(kSlots / row.width, 2, kMostBlocks);
   options.program.traversal = row.traversal;
   options.camera_samples = samples_in_tiles(scene.film, base.work.samples);
   choose_tree(TriangleCount(scene), options.chip, {"traversal"}, options.program);

@@ -14,6 +14,7 @@ namespace {
 
 struct BenchRivalsCommand {
   RivalsQuestion question;
+  SizeOption size;
   ChipOptions chip;
   TimingOption timing;
   LevelOption level;
@@ -25,6 +26,10 @@ struct BenchRivalsCommand {
 
 void BenchRivalsCommand::run() {
   outputs.require_writable();
+  size.require_valid();
+  Scene sized;
+  sized.film = question.film;
+  question.film = size.resized(std::move(sized)).film;
   question.options.chip = chip.chip();
   question.options.level = level.level();
   question.options.timing = timing.style();
@@ -58,6 +63,7 @@ void add_bench_rivals_command(CLI::App& bench) {
   command.add_option("--widths", state->question.widths, "Numbers of PEs")
       ->delimiter(',')
       ->capture_default_str();
+  state->size.add_to(command);
   state->chip.add_to(command, "csx600");
   state->timing.add_to(command);
   state->level.add_to(command);

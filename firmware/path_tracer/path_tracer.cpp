@@ -12,15 +12,18 @@ namespace {
 constexpr int kStackBytes = 1024;
 
 int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
-  return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
-                   config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
+  return std::max(
+      {RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
+       config.is_stream() ? std::max(StreamPathStage::load_bytes(config), ScanStage::kLoadBytes) : 0,
+       config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  return std::max({RayStage::save_bytes(config), IntersectionStage::save_bytes(config),
-                   PathStage::save_bytes(config),
-                   config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
-                   config.uses_tree() ? TreeStage::save_bytes(config) : 0});
+  return std::max(
+      {RayStage::save_bytes(config), IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
+       config.is_stream() ? std::max(StreamPathStage::save_bytes(config), ScanStage::kSaveBytes) : 0,
+       config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
+       config.uses_tree() ? TreeStage::save_bytes(config) : 0});
 }
 
 ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
@@ -40,6 +43,21 @@ std::unique_ptr<RaySearch> make_search(const StageContext& context) {
   return std::make_unique<TreeSearch>(context);
 }
 
+std::unique_ptr<PathStage> make_path_stage(const StageContext& context, RayStore& rays, const Work& work) {
+  if (context.config.is_stream()) return std::make_unique<StreamPathStage>(context, rays, work);
+  return std::make_unique<PathStage>(context, rays, work);
+}
+
+std::unique_ptr<StreamPaths> make_stream_paths(const StageContext& context, PathStage& paths) {
+  if (!context.config.is_stream()) return nullptr;
+  return std::make_unique<StreamPaths>(context, static_cast<StreamPathStage&>(paths));
+}
+
+std::unique_ptr<SlotStates> make_slot_states(const StageContext& context) {
+  if (!context.config.is_stream()) return nullptr;
+  return std::make_unique<SlotStates>(context);
+}
+
 }  // namespace
 
 PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config,
@@ -54,7 +72,7 @@ PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConf
 PathTracer::Rings PathTracer::make_radiance_rings(cn::Machine& machine, const ProgramConfig& config) {
   return {{machine,
            "radiance load buffer",
-           {PassRadiance::load_buffers(config), RadianceStage::kLoadBytes, !config.buffers_loads()}},
+           {PassRadiance::load_buffers(config), PassRadiance::load_bytes(config), !config.buffers_loads()}},
           {machine, "radiance save buffer", {1, RadianceStage::kSaveBytes, !config.buffers_saves()}}};
 }
 
@@ -64,7 +82,7 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       kernels_(kernels),
       config_(built_for(layout, config)),
       layout_(layout),
-      bins_(make_bins(machine.poly_memory(), config_.bin_blocks)),
+      bins_(make_bins(machine.poly_memory(), config_)),
       rings_(make_rings(machine, config_, layout.layers)),
       radiance_rings_(make_radiance_rings(machine, config_)),
       scratchpad_(machine, rings_.loads, config_.scratchpad, layout_),
@@ -72,8 +90,10 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       intersection_stage_(context(rings_), search_->rays()),
       hit_binning_(config_.bins_hits() ? std::make_unique<HitBinning>(context(rings_), search_->rays())
                                        : nullptr),
-      path_stage_(context(rings_), search_->rays(), work),
-      steps_(machine, {rings_.loads, rings_.saves, config_.load_buffers()}),
+      path_stage_(make_path_stage(context(rings_), search_->rays(), work)),
+      stream_paths_(make_stream_paths(context(rings_), *path_stage_)),
+      slot_states_(make_slot_states(context(rings_))),
+      steps_(machine, {rings_.loads, rings_.saves, config_.load_buffers(), slot_states_.get()}),
       radiance_(context(radiance_rings_), rings_.saves) {}
 
 void PathTracer::run(const Progress& progress) {
@@ -83,18 +103,19 @@ void PathTracer::run(const Progress& progress) {
     steps_.load_ahead();
     if (radiance_.is_left() && !next_is_ray_step()) radiance_.run_to_end();
     if (steps_.next() == nullptr) break;
-    if (progress && !progress(path_stage_.camera_rays().issued())) return;
+    if (progress && !progress(path_stage_->camera_rays().issued())) return;
     run_next_step();
   }
   radiance_.announce_results();
   steps_.wait_for_saves();
-  counts_.paths = path_stage_.camera_rays().issued();
+  counts_.paths = path_stage_->camera_rays().issued();
   counts_.steps = steps_.steps() + radiance_.steps();
 }
 
 void PathTracer::fill_bins() {
-  for (int block = 0; block < config_.bin_blocks && path_stage_.camera_rays().remaining() > 0; ++block) {
-    steps_.run_without_loads(path_stage_, block, [&](std::uint64_t step) { path_stage_.fill(step, block); });
+  for (int block = 0; block < config_.bin_blocks && path_stage_->camera_rays().remaining() > 0; ++block) {
+    steps_.run_without_loads(*path_stage_, block,
+                             [&](std::uint64_t step) { path_stage_->fill(step, block); });
     report_fill(block);
     take_into_next_pass(block);
   }
@@ -104,7 +125,8 @@ void PathTracer::run_next_step() {
   const bool is_ray_step = next_is_ray_step();
   if (is_ray_step) radiance_.before_ray_step();
   const Step step = steps_.run_next();
-  if (step.stage == &path_stage_) after_path_step(step);
+  if (stream_paths_) stream_paths_->after_step(steps_, step, pass_.blocks());
+  if (step.stage == path_stage_.get()) after_path_step(step);
   if (hit_binning_ && hit_binning_->after_step(steps_, step, pass_.blocks())) plan_path_stage();
   if (!is_ray_step) return;
   if (search_->after_step(steps_, step, pass_.blocks())) plan_after_search();
@@ -114,10 +136,10 @@ void PathTracer::run_next_step() {
 void PathTracer::after_path_step(const Step& step) {
   radiance_.announce_timed_results();
   report_fill(step.block);
-  if (bins_.blocks[std::size_t(step.block)].live.any()) take_into_next_pass(step.block);
+  if (bins_.blocks[std::size_t(step.block)].has_rays()) take_into_next_pass(step.block);
   if (!pass_.ends_with_this_path_step()) return;
-  radiance_.begin(path_stage_.finished_count(), step.number);
-  path_stage_.clear_finished();
+  radiance_.begin(path_stage_->finished_count(), step.number);
+  path_stage_->clear_finished();
   begin_pass();
 }
 
@@ -128,7 +150,7 @@ void PathTracer::take_into_next_pass(int block) {
 
 void PathTracer::take_empty_blocks() {
   for (int block = 0; block < config_.bin_blocks; ++block)
-    if (!bins_.blocks[std::size_t(block)].live.any()) take_into_next_pass(block);
+    if (!bins_.blocks[std::size_t(block)].has_rays()) take_into_next_pass(block);
 }
 
 void PathTracer::begin_pass() {
@@ -145,7 +167,8 @@ void PathTracer::plan_after_search() {
 }
 
 void PathTracer::plan_path_stage() {
-  for (const int block : pass_.blocks()) steps_.plan(path_stage_, block);
+  if (stream_paths_) return stream_paths_->begin_pass(steps_, pass_.blocks());
+  for (const int block : pass_.blocks()) steps_.plan(*path_stage_, block);
 }
 
 void PathTracer::report_fill(int block) {

@@ -9,8 +9,9 @@
 #include "firmware/path_tracer/pipeline/ray_search.hpp"
 #include "firmware/path_tracer/pipeline/scratchpad_records.hpp"
 #include "firmware/path_tracer/pipeline/step_pipeline.hpp"
+#include "firmware/path_tracer/pipeline/stream_paths.hpp"
 #include "firmware/path_tracer/stages/intersection_stage.hpp"
-#include "firmware/path_tracer/stages/path_stage.hpp"
+#include "firmware/path_tracer/stages/stream_path_stage.hpp"
 
 namespace path_tracer {
 
@@ -68,7 +69,9 @@ class PathTracer {
   std::unique_ptr<RaySearch> search_;
   IntersectionStage intersection_stage_;
   std::unique_ptr<HitBinning> hit_binning_;  ///< in its place, or null
-  PathStage path_stage_;
+  std::unique_ptr<PathStage> path_stage_;
+  std::unique_ptr<StreamPaths> stream_paths_;  ///< steps of the path stage in stream execution, or null
+  std::unique_ptr<SlotStates> slot_states_;    ///< of stream execution, or null
   StepPipeline steps_;
   PassRadiance radiance_;
   Pass pass_;

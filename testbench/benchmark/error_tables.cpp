@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 #include <sstream>
 
+#include "testbench/benchmark/formatted.hpp"
 #include "testbench/files/csv.hpp"
 #include "testbench/system/message_text.hpp"
 
@@ -60,15 +59,6 @@ bool is_timed(const CurvePoint& point) {
 const CurvePoint* last_timed(const ErrorCurve& curve) {
   const auto found = std::find_if(curve.points.rbegin(), curve.points.rend(), is_timed);
   return found == curve.points.rend() ? nullptr : &*found;
-}
-
-__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof(text), format, arguments);
-  va_end(arguments);
-  return text;
 }
 
 std::string row(const CurvePoint& point, bool with_timing) {

@@ -56,6 +56,7 @@ class ClaimRunList {
     add_lengths();
     add_widths();
     add_traversals();
+    add_stream_processor();
     return std::move(runs_);
   }
 
@@ -132,6 +133,12 @@ class ClaimRunList {
       set_tree(Traversal::temporary_bin, of_tree, nodes);
       add("sub-tree of " + std::to_string(nodes), scenes_.many_triangles, of_tree);
     }
+  }
+
+  void add_stream_processor() {
+    RenderOptions options = of_program(Program::segments);
+    options.program.execution = path_tracer::Execution::stream;
+    add("stream", scenes_.box, options);
   }
 
   RenderOptions of_program(Program program) const {

@@ -90,6 +90,20 @@ TEST(SoundFirmware, RunsCleanThroughEveryShapeOfTreeAndBins) {
           }
 }
 
+TEST(SoundFirmware, RunsCleanAsAStreamProcessorsAtEveryLevelOfBuffering) {
+  for (const Program program : kPrograms)
+    for (int n = 0; n <= 8; ++n)
+      for (const bool loads : {false, true})
+        for (const bool saves : {false, true}) {
+          ProgramConfig config = checked_program(program, n, std::max(1, n));
+          config.execution = path_tracer::Execution::stream;
+          config.buffer_loads = loads;
+          config.buffer_saves = saves;
+          expect_clean(small_scene(), config, 8);
+          expect_clean(open_scene(), config, 16);
+        }
+}
+
 TEST(SoundFirmware, RunsCleanWithTexturesAtEveryLevelOfBuffering) {
   for (const Program program : kPrograms)
     for (const Traversal traversal :
@@ -129,6 +143,16 @@ TEST(BrokenFirmware, IsStoppedWhicheverWaitIsLeftOut) {
       if (testing::Test::HasFailure()) return;
     }
   }
+}
+
+TEST(BrokenFirmware, IsStoppedWhicheverWaitOfAStreamProcessorIsLeftOut) {
+  for (const Program program : kPrograms)
+    for (const int n : {0, 1}) {
+      ProgramConfig config = checked_program(program, n);
+      config.execution = path_tracer::Execution::stream;
+      expect_every_wait_is_needed(small_scene(), config);
+      if (testing::Test::HasFailure()) return;
+    }
 }
 
 TEST(BrokenFirmware, IsStoppedWhicheverWaitForTexelsIsLeftOut) {

@@ -241,4 +241,32 @@ TEST_F(BenchCommand, WrongInputIsNamed) {
   expect_error({"bench", "error", kCornellBox, "--reference", "plain.exr"}, {"plain.exr", "csx600.seed"});
 }
 
+TEST_F(BenchCommand, RivalsAreTabledByCoherenceWidthAndTriangles) {
+  const CommandResult result = run({"bench", "rivals", "--triangles", "1000", "--widths", "16,32", "--size",
+                                    "32x32", "--csv", "rivals.csv"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  for (const char* part :
+       {"16 PEs", "32 PEs", "1st, in tiles", "6th segment", "ray_streams", "is cheaper from"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+  const auto rows = csv("rivals.csv");
+  ASSERT_EQ(rows.size(), 12u);
+  std::map<std::string, double> sixth;
+  for (const auto& row : rows) {
+    const auto number = [&](const char* column) { return std::stod(row.at(column)); };
+    EXPECT_EQ(number("triangles"), 1000);
+    if (number("pes") != 32) continue;
+    EXPECT_GT(number("first_shuffled"), number("first")) << row.at("traversal");
+    sixth[row.at("traversal")] = number("sixth");
+  }
+  EXPECT_EQ(sixth.size(), 6u);
+  EXPECT_LT(sixth["temporary_bin"], sixth["packets"]) << "incoherent rays";
+  EXPECT_LT(sixth["ray_streams"], sixth["packets"]) << "lanes are filled by filtering";
+}
+
+TEST_F(BenchCommand, RivalsNeedAScenesTrianglesAndAnArraysWidth) {
+  expect_error({"bench", "rivals", "--widths", "12"}, {"--widths", "12"});
+  expect_error({"bench", "rivals", "--triangles", "5"}, {"--triangles", "5"});
+  expect_error({"bench", "rivals", "--size", "0x4"}, {"--size", "0x4"});
+}
+
 }  // namespace bench_command_test

@@ -18,6 +18,7 @@ const std::map<std::string, std::string> kVerdicts = {
     {"A vertex is appended without loading the path", "true"},
     {"n-buffering hides the latency of loads and saves", "true"},
     {"A bin must be at least n blocks long", "true"},
+    {"PEs that succeed get ascending numbers, where a stream processor unloads and reloads", "true"},
     {"Time falls as n rises, and no further after n = 1", "true"},
     {"Loads and saves move around ten doubles a PE", "true"},
     {"The chip has 50 GFLOPS of double precision", "partly"},

@@ -48,8 +48,9 @@ RenderOptions options_for(Traversal traversal, int n) {
   return options;
 }
 
-constexpr Traversal kTraversals[] = {Traversal::brute_force, Traversal::temporary_bin,   Traversal::refill,
-                                     Traversal::lock_step,   Traversal::shared_treelets, Traversal::packets};
+constexpr Traversal kTraversals[] = {Traversal::brute_force,   Traversal::temporary_bin,   Traversal::refill,
+                                     Traversal::lock_step,     Traversal::shared_treelets, Traversal::packets,
+                                     Traversal::large_packets, Traversal::ray_streams};
 
 TEST_F(CoveredImages, AreTheSameForEveryTraversalDepthOfBufferingAndWidth) {
   const Scene scene = covered_squares({12, 8});

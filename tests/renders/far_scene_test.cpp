@@ -56,7 +56,8 @@ RenderOptions with_tree(Traversal traversal, NodeFormat format) {
 
 TEST_F(FarScene, HasTheSameImage) {
   const Scene scene = centred(test_support::sphere_under_light(9, {24, 20}));
-  for (const Traversal traversal : {Traversal::brute_force, Traversal::refill, Traversal::packets}) {
+  for (const Traversal traversal : {Traversal::brute_force, Traversal::refill, Traversal::packets,
+                                    Traversal::large_packets, Traversal::ray_streams}) {
     const RenderOptions options = with_tree(traversal, NodeFormat::fp32);
     const RenderResult expected = testbench::render_natively(scene, options);
     for (const glm::dvec3& by : kMoves) {

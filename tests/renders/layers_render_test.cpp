@@ -226,8 +226,9 @@ TEST(LayersRender, IsTheSameForEveryTraversalAndBuffering) {
       RenderOptions options = options_for(program, LightSampling::solid_angle, 4);
       options.chip.poly.sram_bytes = 32768;  // n = 8 needs more than the CSX600's 6 KiB
       const std::string expected = render(scene, options).sha256();
-      for (const Traversal traversal : {Traversal::brute_force, Traversal::temporary_bin, Traversal::refill,
-                                        Traversal::lock_step, Traversal::packets, Traversal::shared_treelets})
+      for (const Traversal traversal :
+           {Traversal::brute_force, Traversal::temporary_bin, Traversal::refill, Traversal::lock_step,
+            Traversal::packets, Traversal::shared_treelets, Traversal::large_packets, Traversal::ray_streams})
         for (const int n : {0, 1, 8}) {
           options.program.traversal = traversal;
           options.program.n = n;

@@ -189,8 +189,9 @@ TEST_F(LightCandidates, MakeLessNoiseWhereLightsAreMany) {
   EXPECT_LT(estimate(scene, options_for(8, 128)).variance, 0.5 * of_one);
 }
 
-constexpr Traversal kTraversals[] = {Traversal::brute_force, Traversal::temporary_bin,   Traversal::refill,
-                                     Traversal::lock_step,   Traversal::shared_treelets, Traversal::packets};
+constexpr Traversal kTraversals[] = {Traversal::brute_force,   Traversal::temporary_bin,   Traversal::refill,
+                                     Traversal::lock_step,     Traversal::shared_treelets, Traversal::packets,
+                                     Traversal::large_packets, Traversal::ray_streams};
 
 TEST_F(LightCandidates, MakeTheSameImageForEveryTraversalDepthOfBufferingAndWidth) {
   for (const Scene& scene : {under_lamps(4, {12, 8}), under_every_kind({12, 8})}) {

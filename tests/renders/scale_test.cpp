@@ -50,7 +50,8 @@ TEST_F(Scale, TheCornellBoxIsTheSameInEveryUnit) {
 
 TEST_F(Scale, ASceneWithATreeIsTheSameInEveryUnit) {
   Scene scene = test_support::sphere_under_light(9, {24, 20});
-  for (const Traversal traversal : {Traversal::refill, Traversal::packets})
+  for (const Traversal traversal :
+       {Traversal::refill, Traversal::packets, Traversal::large_packets, Traversal::ray_streams})
     expect_equal_images(scene, with_tree(traversal));
   scene.camera.orthographic_height = 3.0;
   expect_equal_images(scene, with_tree(Traversal::refill));

@@ -18,8 +18,9 @@ using testbench::RenderOptions;
 using testbench::Scene;
 using testbench::TextureFilter;
 
-constexpr Traversal kTraversals[] = {Traversal::brute_force, Traversal::temporary_bin,   Traversal::refill,
-                                     Traversal::lock_step,   Traversal::shared_treelets, Traversal::packets};
+constexpr Traversal kTraversals[] = {Traversal::brute_force,   Traversal::temporary_bin,   Traversal::refill,
+                                     Traversal::lock_step,     Traversal::shared_treelets, Traversal::packets,
+                                     Traversal::large_packets, Traversal::ray_streams};
 
 RenderOptions options_for(Program program, Traversal traversal, int n) {
   RenderOptions options = test_support::render_options(program, 2);

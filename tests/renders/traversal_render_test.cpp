@@ -20,8 +20,9 @@ using testbench::RenderResult;
 using testbench::Scene;
 
 constexpr Program kPrograms[] = {Program::segments, Program::direct, Program::full};
-constexpr Traversal kTraversals[] = {Traversal::temporary_bin, Traversal::refill, Traversal::lock_step,
-                                     Traversal::shared_treelets, Traversal::packets};
+constexpr Traversal kTraversals[] = {Traversal::temporary_bin,   Traversal::refill,  Traversal::lock_step,
+                                     Traversal::shared_treelets, Traversal::packets, Traversal::large_packets,
+                                     Traversal::ray_streams};
 
 Scene scene_of(GeneratedScene kind) {
   Scene scene = testbench::generate_scene(kind, 300);
@@ -69,6 +70,11 @@ std::vector<Variation> variations() {
   variations.push_back({"8 quantised children", [](RenderOptions& o) {
                           o.program.tree = {{NodeFormat::quantised8, 8}, 2, 1, 1, 2};
                         }});
+  for (const int blocks : {1, 3, 16})
+    variations.push_back({std::to_string(blocks) + " blocks a packet", [=](RenderOptions& o) {
+                            o.program.packet_blocks = blocks;
+                            o.program.bin_blocks = 20;
+                          }});
   for (const int visits : {0, 1})
     variations.push_back({std::to_string(visits) + " visits a turn",
                           [=](RenderOptions& o) { o.program.tree.visits = visits; }});
@@ -104,7 +110,7 @@ void expect_images_of_brute_force(const Scene& scene, Program program) {
           << variation.name << ", program " << int(program) << ", traversal " << int(traversal);
       EXPECT_EQ(result.counts.segments, expected.counts.segments);
       EXPECT_EQ(result.counts.shadow_rays, expected.counts.shadow_rays);
-      if (traversal == Traversal::packets) {
+      if (options.program.uses_packets()) {
         EXPECT_EQ(result.counts.traversal.leaf_loads, 0u) << "leaves are operands of the control unit";
       } else {
         EXPECT_GT(result.counts.traversal.leaf_loads, result.counts.segments / 2);
@@ -134,7 +140,8 @@ TEST_F(TraversalRender, ShowsTheSameImageInAnyOrderOfPixels) {
   const RenderResult in_order =
       testbench::render_natively(scene, options_for(Program::full, Traversal::brute_force));
   for (const int stride : {5, 77, 191, 193, 1000001})
-    for (const Traversal traversal : {Traversal::brute_force, Traversal::refill, Traversal::packets}) {
+    for (const Traversal traversal : {Traversal::brute_force, Traversal::refill, Traversal::packets,
+                                      Traversal::large_packets, Traversal::ray_streams}) {
       RenderOptions options = options_for(Program::full, traversal);
       options.program.pixel_stride = stride;
       EXPECT_EQ(testbench::render_natively(scene, options).film.sha256(), in_order.film.sha256())
@@ -157,12 +164,12 @@ TEST_F(TraversalRender, RefusesAStrideThatLeavesPixelsOut) {
 
 TEST_F(TraversalRender, CountsEachRayOnceInItsFirstPass) {
   for (const Traversal traversal : kTraversals) {
-    const RenderResult result =
-        testbench::render_natively(scene_of(GeneratedScene::blob), options_for(Program::direct, traversal));
+    const RenderOptions options = options_for(Program::direct, traversal);
+    const RenderResult result = testbench::render_natively(scene_of(GeneratedScene::blob), options);
     const path_tracer::TraversalCounts& counts = result.counts.traversal;
     ASSERT_EQ(counts.rays.size(), counts.lanes.size());
     // Packets take one pass. Shared treelets come in no order, so all passes but the first count as one.
-    const bool in_passes = traversal != Traversal::packets && traversal != Traversal::shared_treelets;
+    const bool in_passes = !options.program.uses_packets() && traversal != Traversal::shared_treelets;
     ASSERT_GT(counts.rays.size(), in_passes ? 2u : 0u);
     EXPECT_EQ(counts.rays[0], result.counts.segments + result.counts.shadow_rays);
     EXPECT_LE(counts.rays_before_tail, counts.lanes_before_tail);

@@ -19,6 +19,9 @@ namespace path_tracer {
 inline namespace CN_LEVEL {
 const TraversalKernels& traversal_kernel_table();
 const PacketKernels& packet_kernel_table();
+const LargePacketKernels& large_packet_kernel_table();
+const RayStreamKernels& ray_stream_kernel_table();
+const StreamKernels& stream_kernel_table();
 cn::Kernel<IntersectArguments> tree_search_kernel();
 }  // namespace CN_LEVEL
 
@@ -394,6 +397,9 @@ const Kernels& kernel_table() {
       cn::kernel<FlagArguments, flag>("flag"),
       traversal_kernel_table,
       packet_kernel_table,
+      large_packet_kernel_table,
+      ray_stream_kernel_table,
+      stream_kernel_table,
   };
   return table;
 }

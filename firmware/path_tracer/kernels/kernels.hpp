@@ -150,7 +150,7 @@ struct AppendArguments {
 /// Path stage, before its second half, of a run with a list of camera samples: where the entries are.
 struct ListedSampleArguments {
   PolyField<std::int32_t> number;  ///< ascending numbers of the lanes whose path ended
-  std::int32_t started = 0;        ///< paths to start, at most the number of PEs
+  std::int32_t started = 0;        ///< paths to start, of the numbers from 0 on
   MonoAddress next_listed = 0;
   PolyField<MonoAddress> place;
   LaneMask* starts = nullptr;
@@ -171,7 +171,7 @@ struct ContinuePathsArguments {
   const CameraRecord* camera = nullptr;
   CameraRayOrder camera_rays;
   bool is_listed = false;      ///< `next_path` names the pixel and sample already, not `camera_rays`
-  std::int32_t remaining = 0;  ///< camera rays to generate, at most the number of PEs
+  std::int32_t remaining = 0;  ///< camera rays to generate for the numbers from 0 on
   PolyPointer<PathRecord> next_path;
   bool path_has_tail = false;  ///< DirectionRecord, as `path` and `scatter`
   bool has_passed = false;     ///< behind it a PassedRecord
@@ -249,6 +249,9 @@ struct FoldArguments {
 };
 
 struct PacketKernels;
+struct LargePacketKernels;
+struct RayStreamKernels;
+struct StreamKernels;
 
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
@@ -270,8 +273,11 @@ struct Kernels {
   cn::Kernel<NumberedPlaceArguments> binned_hit_place;
   cn::Kernel<LocateSlotArguments> locate_slot;
   cn::Kernel<FlagArguments> flag;
-  const TraversalKernels& (*traversal)();  ///< of the same level, as `packet`
+  const TraversalKernels& (*traversal)();  ///< of the same level, as the others
   const PacketKernels& (*packet)();
+  const LargePacketKernels& (*large_packet)();
+  const RayStreamKernels& (*ray_stream)();
+  const StreamKernels& (*stream)();
 };
 
 const Kernels& kernels(Level level);

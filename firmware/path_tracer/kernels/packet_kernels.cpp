@@ -3,14 +3,10 @@
 #include "firmware/path_tracer/kernels/packet_kernels.hpp"
 
 #include "firmware/path_tracer/geometry/nearest_face.hpp"
-#include "firmware/path_tracer/tree/node_ray.hpp"
+#include "firmware/path_tracer/tree/mono_slabs.hpp"
 
 namespace path_tracer {
 namespace {
-
-poly<std::int32_t> signed_high_word(const poly<double>& a) {
-  return cn::reinterpret_word<std::int32_t>(cn::high_word(a));
-}
 
 void begin(const BeginPacketArguments& arguments) {
   const PolyPointer<TraversalRecord>& record = arguments.record;
@@ -19,7 +15,7 @@ void begin(const BeginPacketArguments& arguments) {
   arguments.packet.set(&PacketRecord::limit,
                        signed_high_word(poly<double>(std::numeric_limits<double>::infinity())));
   arguments.packet.set(&PacketRecord::light, arguments.ray.get(&QueuedRay::light));
-  arguments.keys[PacketKeys::kRoot].write(poly<std::int32_t>(0));
+  if (arguments.has_keys) arguments.keys[PacketKeys::kRoot].write(poly<std::int32_t>(0));
   cn::keep(record.get(&TraversalRecord::light_face) != poly<std::int32_t>(kNoFace), *arguments.seeks_light);
 }
 
@@ -31,26 +27,6 @@ void want(const WantArguments& arguments) {
     arguments.keys[arguments.keys.place(arguments.level, i)].write(poly<std::int32_t>(kNotMet));
 }
 
-/// The distances at which a ray enters and leaves four children's boxes, by axis.
-struct Slabs4 {
-  poly4<double> entry[kAxes];
-  poly4<double> exit[kAxes];
-
-  /// Computes the same numbers as BoxRay. Nodes are the same for all PEs, but the near side of a box is not;
-  /// so both sides are computed before they are told apart.
-  Slabs4(const MonoNode::Four& four, const Point3& origin, const Direction3& minus_inverse) {
-    for (int axis = 0; axis < kAxes; ++axis) {
-      const poly<double>& scale = component(minus_inverse, axis);
-      const poly4<double> from = same4(component(origin, axis));
-      const poly4<double> lower = (from - four.lower[axis]) * same4(scale);
-      const poly4<double> upper = (from - four.upper[axis]) * same4(scale);
-      const mask backward = scale > 0.0;
-      entry[axis].assign_all_lanes(cn::select(backward, upper, lower));
-      exit[axis].assign_all_lanes(cn::select(backward, lower, upper));
-    }
-  }
-};
-
 void visit(const VisitArguments& arguments) {
   const MonoNode& node = *arguments.node;
   const Point3 origin = arguments.record.get(&TraversalRecord::origin);
@@ -61,12 +37,11 @@ void visit(const VisitArguments& arguments) {
   for (int four = 0; four < node.children; four += 4) {
     const Slabs4 slabs(node.four[four / 4], origin, minus_inverse);
     for (int i = 0; i < 4 && four + i < node.children; ++i) {
-      const poly<double> from = from_origin(slabs.entry[0][i], slabs.entry[1][i], slabs.entry[2][i]);
-      const poly<double> to = cn::min(cn::min(slabs.exit[0][i], slabs.exit[1][i]), slabs.exit[2][i]);
-      const poly<std::int32_t> entry = signed_high_word(from);
+      const Slabs box = slabs_of(slabs, std::size_t(i));
+      const poly<std::int32_t> entry = signed_high_word(box.entry);
       const int child = four + i;
       key[child].assign_all_lanes(
-          cn::select((from <= to) & (entry <= limit), entry, poly<std::int32_t>(kNotMet)));
+          cn::select((box.entry <= box.exit) & (entry <= limit), entry, poly<std::int32_t>(kNotMet)));
       first.assign_all_lanes(cn::min(first, key[child]));
       arguments.keys[arguments.keys.place(arguments.level, child)].write(key[child]);
     }

@@ -49,6 +49,7 @@ struct BeginPacketArguments {
   PolyPointer<QueuedRay> ray;
   PolyPointer<TraversalRecord> record;
   PolyPointer<PacketRecord> packet;
+  bool has_keys = true;
   PacketKeys keys;
   LaneMask* seeks_light = nullptr;
 };

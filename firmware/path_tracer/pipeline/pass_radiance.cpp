@@ -13,14 +13,22 @@ int PassRadiance::load_buffers(const ProgramConfig& config) {
 PassRadiance::PassRadiance(const StageContext& context, TransferRing& path_saves)
     : context_(context),
       path_saves_(path_saves),
-      stage_(context),
+      stage_(context.config.is_stream() ? nullptr : std::make_unique<RadianceStage>(context)),
+      stream_stage_(context.config.is_stream()
+                        ? std::make_unique<StreamRadianceStage>(context, load_buffers(context.config))
+                        : nullptr),
       steps_(context.machine, {context.loads, context.saves, load_buffers(context.config)}),
       results_(context.machine, context.layout) {}
 
 void PassRadiance::begin(int finished_paths, std::uint64_t last_path_step) {
   last_path_step_ = last_path_step;
   records_ = finished_paths;
-  stage_.fold().set_results(results_.half());
+  if (stream_stage_) {
+    stream_stage_->set_results(results_.half());
+    stream_stage_->begin(records_);
+  } else {
+    stage_->fold().set_results(results_.half());
+  }
   const int num_pes = context_.machine.num_pes();
   list_steps_left_ = (records_ + num_pes - 1) / num_pes;
   next_list_block_ = 0;
@@ -37,8 +45,12 @@ void PassRadiance::plan_list_step() {
   const int num_pes = context_.machine.num_pes();
   const int first = next_list_block_ * num_pes;
   if (first >= records_) return;
-  stage_.begin_block(next_list_block_, std::min(num_pes, records_ - first));
-  steps_.plan(stage_.list(), next_list_block_);
+  if (stream_stage_) {
+    steps_.plan(*stream_stage_, next_list_block_);
+  } else {
+    stage_->begin_block(next_list_block_, std::min(num_pes, records_ - first));
+    steps_.plan(stage_->list(), next_list_block_);
+  }
   ++next_list_block_;
 }
 
@@ -58,17 +70,15 @@ void PassRadiance::load_ahead() {
 
 void PassRadiance::run_step() {
   const Step step = steps_.run_next();
-  if (step.stage == &stage_.list()) {
-    after_list_step(step.block);
-  } else {
-    last_result_step_ = step.number;
-    if (stage_.fold().is_last(step.block)) plan_list_step();
-  }
+  if (stage_ && step.stage == &stage_->list()) return after_list_step(step.block);
+  last_result_step_ = step.number;
+  if (stream_stage_) --list_steps_left_;
+  if (stream_stage_ || stage_->fold().is_last(step.block)) plan_list_step();
 }
 
 void PassRadiance::after_list_step(int block) {
-  for (int load = stage_.loads(block) - 1; load >= 0; --load)
-    steps_.plan(stage_.fold(), stage_.fold_block(block, load));
+  for (int load = stage_->loads(block) - 1; load >= 0; --load)
+    steps_.plan(stage_->fold(), stage_->fold_block(block, load));
   --list_steps_left_;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <memory>
+
 #include "firmware/path_tracer/pipeline/results_handover.hpp"
 #include "firmware/path_tracer/pipeline/step_pipeline.hpp"
 #include "firmware/path_tracer/stages/radiance_stage.hpp"
+#include "firmware/path_tracer/stages/stream_radiance_stage.hpp"
 
 namespace path_tracer {
 
@@ -16,6 +19,9 @@ class PassRadiance {
 
   /// Buffers of its load ring.
   static int load_buffers(const ProgramConfig& config);
+  static int load_bytes(const ProgramConfig& config) {
+    return config.is_stream() ? StreamRadianceStage::load_bytes(config) : RadianceStage::kLoadBytes;
+  }
 
   /// Plans the first steps for a pass that listed `finished_paths`, the last of them in path step
   /// `last_path_step`. A program that leaves out radiance is timed without it, as in the paper: all steps run
@@ -50,7 +56,8 @@ class PassRadiance {
 
   StageContext context_;
   TransferRing& path_saves_;
-  RadianceStage stage_;
+  std::unique_ptr<RadianceStage> stage_;
+  std::unique_ptr<StreamRadianceStage> stream_stage_;  ///< in its place, in stream execution
   StepPipeline steps_;
   ResultsHandover results_;
   std::uint64_t last_path_step_ = 0;  ///< its save completes the list of finished paths

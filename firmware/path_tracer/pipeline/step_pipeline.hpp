@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 
+#include "firmware/path_tracer/stages/slot_states.hpp"
 #include "firmware/path_tracer/stages/stage.hpp"
 
 namespace path_tracer {
@@ -30,6 +31,7 @@ class StepPipeline {
     TransferRing& loads;
     TransferRing& saves;
     int steps;
+    SlotStates* slot_states = nullptr;  ///< of stream execution
   };
 
   StepPipeline(cn::Machine& machine, const Buffers& buffers) : machine_(machine), buffers_(buffers) {}
@@ -51,9 +53,18 @@ class StepPipeline {
   /// Steps whose loads were begun.
   std::uint64_t steps() const { return next_number_; }
   /// Waits until the saves of all steps are over.
-  void wait_for_saves() { buffers_.saves.wait_until(next_number_); }
+  void wait_for_saves();
 
  private:
+  /// Whether the step's first loads bring the state of its slots, which tells what else to load.
+  bool loads_slot_states(const Step& step) const {
+    return buffers_.slot_states != nullptr && step.stage->works_on_slots();
+  }
+  bool prepares(const Step& step) const { return loads_slot_states(step) || step.stage->prepares(); }
+  bool loads_early(const Step& step) const { return loads_slot_states(step) || step.stage->loads_early(); }
+  void load(const Step& step);
+  void prepare(const Step& step);
+  void save(const Step& step);
   std::size_t look_ahead(const Step& step) const;
   bool can_load(const Step& step) const;
   void prepare_steps();

@@ -123,6 +123,12 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
         memory.take<BinnedHit>("binned hits", slots * std::uint64_t(hit_kinds(config.features)));
     layout.casts_bin = memory.take<cn::MonoAddress>("casts bin", slots);
   }
+  if (config.is_stream()) {
+    layout.slot_states = memory.take<SlotState>("slot states", slots);
+    layout.finished_bin = memory.take<FinishedRecord>("finished bin", slots);
+    layout.path_numbers =
+        memory.take<std::uint64_t>("path numbers", ScanLevels(std::int32_t(slots)).all_words);
+  }
   layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
   layout.folds = memory.take<FoldRecord>("folds", slots);
   layout.finished = memory.take<FinishedRecord>("finished paths", slots);
@@ -137,8 +143,9 @@ void place_bins(Layout& layout, cn::MonoAddress first) {
   const auto move = [distance](auto&... bins) { ((bins.address += distance), ...); };
   move(layout.ray_bin, layout.ray_queue, layout.traversal_bin, layout.treelet_pool, layout.intersection_bin,
        layout.surface_place_bin, layout.scatter_bin, layout.lighting_bin, layout.direct_light_bin,
-       layout.path_bin, layout.binned_hits, layout.casts_bin, layout.vertices, layout.folds, layout.finished,
-       layout.results_header[0], layout.results_header[1], layout.results[0], layout.results[1]);
+       layout.path_bin, layout.binned_hits, layout.casts_bin, layout.slot_states, layout.finished_bin,
+       layout.path_numbers, layout.vertices, layout.folds, layout.finished, layout.results_header[0],
+       layout.results_header[1], layout.results[0], layout.results[1]);
   for (Layout::Region& region : layout.regions)
     if (region.first >= layout.scene_bytes) region.first += distance;
   layout.total_bytes += distance;

@@ -5,6 +5,7 @@
 
 #include "firmware/cn/chip/mono_memory.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
+#include "firmware/path_tracer/records/slot_state.hpp"
 #include "firmware/path_tracer/records/tails.hpp"
 
 namespace path_tracer {
@@ -64,6 +65,10 @@ struct Layout {
   // Of bins of hits (Shading::material_bins): BinnedHits of each kind, and which slots cast a shadow ray.
   cn::MonoPointer<BinnedHit> binned_hits;
   cn::MonoPointer<cn::MonoAddress> casts_bin;
+  // Of stream execution: for each slot its state and the record of the path that it had; words of ScanLevels.
+  cn::MonoPointer<SlotState> slot_states;
+  cn::MonoPointer<FinishedRecord> finished_bin;
+  cn::MonoPointer<std::uint64_t> path_numbers;
   cn::MonoPointer<VertexRecord> vertices;
   cn::MonoPointer<FoldRecord> folds;
   cn::MonoPointer<FinishedRecord> finished;

@@ -24,6 +24,10 @@ void validate(const ProgramConfig& config) {
           "at most the bin length, " + std::to_string(config.bin_blocks) + " blocks");
   require(config.uses_tree() || config.scratchpad != Scratchpad::nodes, "scratchpad", "nodes",
           "none, triangles or fitting with traversal brute_force, which has no nodes");
+  require(!config.is_stream() || !config.uses_tree(), "traversal", name_of(config.traversal),
+          "brute_force with execution stream");
+  require(!config.is_stream() || !config.bins_hits(), "shading", name_of(config.shading),
+          "every_lobe or present_lobes with execution stream, which sorts no hits");
   const NodeLayout& layout = config.tree.layout;
   require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
           "4 or 8 with node_format quantised8");

@@ -55,6 +55,17 @@ enum class Traversal : std::uint8_t {
   packets,
   /// Through a tree of which a block of rays shares the piece that all of them need.
   shared_treelets,
+  // Through a tree that the control unit traverses for several blocks of rays at once:
+  large_packets,  ///< culled by the interval of all rays, then tested from the first active block on
+  ray_streams,    ///< of which each PE filters the rays that are active in a node
+};
+
+/// How a stage's data go from one kernel to the next.
+enum class Execution : std::uint8_t {
+  mtap,  ///< PEs keep what the next kernel needs; the PE-to-PE path numbers and compacts (paper, section 4)
+  /// As on a stream processor (Purcell, "Ray Tracing on a Stream Processor", PhD thesis, Stanford 2004): each
+  /// kernel reads its streams from mono memory and writes all results back.
+  stream,
 };
 
 /// Which arrays of the scene the firmware copies to the memory on the chip, as it starts.
@@ -67,6 +78,7 @@ enum class Scratchpad : std::uint8_t {
 
 inline constexpr int kMaxBuffers = 8;
 inline constexpr int kMaxLightCandidates = 8;
+inline constexpr int kMaxPacketBlocks = 16;
 
 /// Limits far beyond what fits the chip; they keep slot numbers within 32 bits.
 inline constexpr int kMaxBinBlocks = 65536;
@@ -79,6 +91,7 @@ inline constexpr int kVerticesPerLoad = 4;
 struct ProgramConfig {
   Features features;  ///< of the scene; PathTracer takes them from the layout
   Program program = Program::full;
+  Execution execution = Execution::mtap;
   int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
@@ -104,9 +117,16 @@ struct ProgramConfig {
   int pixel_stride = 1;
   Scratchpad scratchpad = Scratchpad::none;
   Traversal traversal = Traversal::brute_force;
+  int packet_blocks = 8;  ///< blocks of rays in a large packet or a ray stream
   TreeShape tree;
 
   bool uses_tree() const { return traversal != Traversal::brute_force; }
+  bool is_stream() const { return execution == Execution::stream; }
+  /// Whether the control unit traverses the tree, so that PEs load none of it.
+  bool uses_packets() const {
+    return traversal == Traversal::packets || traversal == Traversal::large_packets ||
+           traversal == Traversal::ray_streams;
+  }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
   bool casts_shadow_rays() const { return program != Program::segments && features.lights.any(); }

@@ -134,6 +134,10 @@ Options bins() {
   return {choice<&ProgramConfig::program>(
               "program", Program::full, kProgramNames,
               "what is timed: path segments; with a shadow ray each; with the radiance of finished paths"),
+          choice<&ProgramConfig::execution>(
+              "execution", Execution::mtap, kExecutionNames,
+              "mtap: PEs keep data between kernels and number each other; stream: as on a stream processor, "
+              "each kernel reads from mono memory and writes all results back"),
           integer<&ProgramConfig::n>("n", "blocks", 1, {0, kMaxBuffers},
                                      "blocks loaded ahead and saved behind; 0: none"),
           {"buffer", "-", std::string("both"), Names(kBufferNames.begin(), kBufferNames.end()),
@@ -203,6 +207,9 @@ Options tree() {
       chosen("what the scene and the chip make fastest",
              choice<&ProgramConfig::traversal>("traversal", Traversal::brute_force, kTraversalNames,
                                                "how rays find triangles")),
+      chosen("4 in a large packet, 16 in a ray stream, fewer if they do not fit",
+             integer<&ProgramConfig::packet_blocks>("packet_blocks", "blocks", 8, {1, kMaxPacketBlocks},
+                                                    "blocks of rays in a large packet or a ray stream")),
       chosen("what the traversal makes fastest",
              choice<shape, layout, &NodeLayout::format>("node_format", NodeFormat::fp32, kNodeFormatNames,
                                                         "boxes of the tree; quantised8 needs 4 or 8 "

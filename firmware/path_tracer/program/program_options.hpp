@@ -16,17 +16,22 @@ namespace path_tracer {
 
 /// Names of the enumerations' values, in the order of the values.
 inline constexpr std::array kProgramNames = {"segments", "direct", "full"};
+inline constexpr std::array kExecutionNames = {"mtap", "stream"};
 inline constexpr std::array kSamplerNames = {"philox", "sobol"};
 inline constexpr std::array kLightSamplingNames = {"area", "solid_angle"};
 inline constexpr std::array kEstimatorNames = {"light", "mis", "per_lobe"};
 inline constexpr std::array kShadingNames = {"every_lobe", "present_lobes", "material_bins", "texture_bins"};
 inline constexpr std::array kScratchpadNames = {"none", "nodes", "triangles", "fitting"};
-inline constexpr std::array kTraversalNames = {"brute_force", "temporary_bin", "refill",
-                                               "lock_step",   "packets",       "shared_treelets"};
+inline constexpr std::array kTraversalNames = {"brute_force",   "temporary_bin", "refill",
+                                               "lock_step",     "packets",       "shared_treelets",
+                                               "large_packets", "ray_streams"};
 inline constexpr std::array kNodeFormatNames = {"fp64", "fp32", "quantised8"};
 
 inline const char* name_of(Program program) {
   return kProgramNames.at(std::size_t(program));
+}
+inline const char* name_of(Execution execution) {
+  return kExecutionNames.at(std::size_t(execution));
 }
 inline const char* name_of(Sampler sampler) {
   return kSamplerNames.at(std::size_t(sampler));

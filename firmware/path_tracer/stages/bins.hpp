@@ -15,8 +15,16 @@ struct Bins {
     LaneMask hit_something;
     LaneMask shadow;  ///< slots whose ray is a shadow ray
     LaneMask casts;   ///< slots whose next ray is a shadow ray
+    // Of stream execution, between the halves of the path stage:
+    LaneMask ended;     ///< slots whose path ended
+    LaneMask finished;  ///< slots whose path ended or fills its slot
     PolyField<MonoAddress> surface_place;
     PolyField<MonoAddress> light_place;
+    // As the latest path step left it, for the control unit and counts:
+    int segment_count = 0;
+    int shadow_ray_count = 0;
+
+    bool has_rays() const { return segment_count + shadow_ray_count > 0; }
 
     LaneMask segments() const { return live.without(shadow); }  ///< slots whose ray is a segment
     LaneMask ended_shadow() const {
@@ -27,7 +35,7 @@ struct Bins {
   std::vector<Block> blocks;
 };
 
-/// Allocates the places of all blocks in poly memory.
-Bins make_bins(cn::PolyMemory& memory, int blocks);
+/// Allocates the places of all blocks in poly memory; not in stream execution, where no PE keeps them.
+Bins make_bins(cn::PolyMemory& memory, const ProgramConfig& config);
 
 }  // namespace path_tracer

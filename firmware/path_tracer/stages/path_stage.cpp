@@ -40,14 +40,17 @@ PathStage::Saves PathStage::saves(std::uint64_t step) const {
 
 void PathStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
-  const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
-  const LaneMask ready = bin.ready();
-  const RecordSizes& sizes = context_.layout.sizes;
-  load_block(step, block, to.path, context_.layout.path_bin, ready, sizes.path);
-  load_block(step, block, to.scatter, context_.layout.scatter_bin, ready, sizes.scatter);
+  load_paths(step, block, bin.ready());
   if (context_.config.casts_shadow_rays())
-    load_block(step, block, to.direct_light, context_.layout.direct_light_bin, bin.ended_shadow());
+    load_block(step, block, loads(step).direct_light, context_.layout.direct_light_bin, bin.ended_shadow());
+}
+
+void PathStage::load_paths(std::uint64_t step, int block, const LaneMask& enabled) {
+  const Loads to = loads(step);
+  const RecordSizes& sizes = context_.layout.sizes;
+  load_block(step, block, to.path, context_.layout.path_bin, enabled, sizes.path);
+  load_block(step, block, to.scatter, context_.layout.scatter_bin, enabled, sizes.scatter);
 }
 
 void PathStage::process(std::uint64_t step, int block) {
@@ -59,7 +62,9 @@ void PathStage::process(std::uint64_t step, int block) {
     context_.machine.number_ascending(ended_, number_);
     context_.counts.folds += std::uint64_t(finished_.count() - ended_count);
   }
-  continue_paths(step, block, ended_count);
+  const std::int32_t started = paths_to_start(ended_count);
+  continue_paths(step, block, number_, started);
+  camera_rays_.issue(std::uint64_t(started));
 }
 
 void PathStage::append_vertices(std::uint64_t step, int block) {
@@ -116,11 +121,12 @@ void PathStage::list_finished(std::uint64_t step) {
 
 /// Gathers the list's entries for the paths that start, straight to where their records are made. The step
 /// waits for them: which slots start a path is known no earlier. Their places lie where the rays will.
-void PathStage::load_listed(std::uint64_t step, int block, std::int32_t started) {
+void PathStage::load_listed(std::uint64_t step, int block, PolyField<std::int32_t> number,
+                            std::int32_t started) {
   const Saves to = saves(step);
   LaneMask starts;
   ListedSampleArguments arguments;
-  arguments.number = number_;
+  arguments.number = number;
   arguments.started = started;
   arguments.next_listed = (context_.layout.camera_samples + camera_rays_.issued()).address;
   arguments.place = PolyField<MonoAddress>{to.ray.ray.span().offset_bytes};
@@ -131,18 +137,17 @@ void PathStage::load_listed(std::uint64_t step, int block, std::int32_t started)
   context_.loads.wait(step);
 }
 
-void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
+void PathStage::continue_paths(std::uint64_t step, int block, PolyField<std::int32_t> number,
+                               std::int32_t started) {
   Bins::Block& bin = bin_block(block);
   const Loads from = loads(step);
   const Saves to = saves(step);
-  const auto started = static_cast<std::int32_t>(
-      std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended_count)));
-  if (is_listed_ && started > 0) load_listed(step, block, started);
+  if (is_listed_ && started > 0) load_listed(step, block, number, started);
   continued_ = LaneMask{};
   ContinuePathsArguments arguments;
   arguments.path = from.path;
   arguments.scatter = from.scatter;
-  arguments.number = number_;
+  arguments.number = number;
   arguments.ended = &ended_;
   arguments.finished = &finished_;
   arguments.camera = context_.machine.read_mono(context_.layout.camera);
@@ -163,28 +168,43 @@ void PathStage::continue_paths(std::uint64_t step, int block, int ended_count) {
   arguments.ray = to.ray.ray;
   arguments.live = &continued_;
   context_.machine.run(context_.kernels.continue_paths, arguments, appended_);
-  camera_rays_.issue(std::uint64_t(started));
   bin.live = continued_.with(bin.casts);
   bin.shadow = bin.casts;
+  bin.segment_count = bin.segments().count();
+  bin.shadow_ray_count = bin.shadow.count();
 }
 
 void PathStage::fill(std::uint64_t step, int block) {
   appended_ = LaneMask::first(num_pes());
   ended_ = appended_;
   finished_ = LaneMask{};
-  const int count = context_.machine.number_ascending(ended_, number_);
-  continue_paths(step, block, count);
+  const std::int32_t started = paths_to_start(context_.machine.number_ascending(ended_, number_));
+  continue_paths(step, block, number_, started);
+  camera_rays_.issue(std::uint64_t(started));
   appended_ = LaneMask{};
 }
 
 void PathStage::save(std::uint64_t step, int block) {
-  const Saves from = saves(step);
   if (appended_.any()) {
-    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.vertex_place), from.vertex.span(),
-                            appended_);
-    context_.saves.copy_p2m(step, block, context_.machine.places_in(from.finished_place),
-                            from.finished.span(), finished_);
+    save_vertices(step, block);
+    save_finished(step, block);
   }
+  save_paths(step, block);
+}
+
+void PathStage::save_vertices(std::uint64_t step, int block) {
+  const Saves from = saves(step);
+  context_.saves.copy_p2m(step, block, context_.machine.places_in(from.vertex_place), from.vertex.span(),
+                          appended_);
+}
+
+void PathStage::save_finished(std::uint64_t step, int block) {
+  context_.saves.copy_p2m(step, block, context_.machine.places_in(finished_place(step)),
+                          finished_entry(step).span(), finished_);
+}
+
+void PathStage::save_paths(std::uint64_t step, int block) {
+  const Saves from = saves(step);
   save_block(step, block, context_.layout.path_bin, from.path, continued_, context_.layout.sizes.path);
   rays_.save(context_.saves, step, {block}, from.ray, bin_block(block).light_place, continued_);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "firmware/path_tracer/stages/camera_rays.hpp"
@@ -31,7 +32,7 @@ class PathStage : public Stage {
   void save(std::uint64_t step, int block) override;
 
   /// Fills an empty block with camera rays; replaces load and process.
-  void fill(std::uint64_t step, int block);
+  virtual void fill(std::uint64_t step, int block);
 
   /// Paths listed since the last clear_finished().
   int finished_count() const { return finished_count_; }
@@ -39,7 +40,7 @@ class PathStage : public Stage {
 
   const CameraRays& camera_rays() const { return camera_rays_; }
 
- private:
+ protected:
   struct Loads {
     PolyPointer<PathRecord> path;
     PolyPointer<ScatterRecord> scatter;
@@ -55,22 +56,37 @@ class PathStage : public Stage {
   };
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;
+  /// Writes the vertices, the entries of the list and which paths ended or fill their slots.
   void append_vertices(std::uint64_t step, int block);
-  void list_finished(std::uint64_t step);
-  void load_listed(std::uint64_t step, int block, std::int32_t started);
-  void continue_paths(std::uint64_t step, int block, int ended_count);
+  void load_paths(std::uint64_t step, int block, const LaneMask& enabled);
+  PolyPointer<FinishedRecord> finished_entry(std::uint64_t step) const { return saves(step).finished; }
+  PolyField<MonoAddress> finished_place(std::uint64_t step) const { return saves(step).finished_place; }
+  void save_vertices(std::uint64_t step, int block);
+  void save_finished(std::uint64_t step, int block);
+  void save_paths(std::uint64_t step, int block);
+  /// Camera rays for that many ended paths, or all that are left.
+  std::int32_t paths_to_start(int ended) const {
+    return static_cast<std::int32_t>(std::min<std::uint64_t>(camera_rays_.remaining(), std::uint64_t(ended)));
+  }
+  /// @param number ascending numbers of the lanes whose path ended; those below `started` start a path
+  void continue_paths(std::uint64_t step, int block, PolyField<std::int32_t> number, std::int32_t started);
   void count_segments(int block);
 
   RayStore& rays_;
   CameraRays camera_rays_;
   bool is_listed_;  ///< camera rays follow a list (Work)
-  PolyField<std::int32_t> number_;
   // The current block, from process to save:
   LaneMask appended_;
   LaneMask ended_;
   LaneMask finished_;
   LaneMask continued_;  ///< slots with a new ray
   int finished_count_ = 0;
+
+ private:
+  void list_finished(std::uint64_t step);
+  void load_listed(std::uint64_t step, int block, PolyField<std::int32_t> number, std::int32_t started);
+
+  PolyField<std::int32_t> number_;
   std::vector<std::uint32_t> segments_;  ///< segments of the path in each slot; for RunCounts only
 };
 

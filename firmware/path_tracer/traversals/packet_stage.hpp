@@ -1,17 +1,15 @@
 #pragma once
 
-#include "firmware/path_tracer/kernels/packet_kernels.hpp"
+#include "firmware/path_tracer/traversals/packet_rays.hpp"
 #include "firmware/path_tracer/traversals/tree_search.hpp"
-#include "firmware/path_tracer/traversals/tree_stage.hpp"
 
 /// Coherent packets, for comparison: a block of rays shares one traversal (Wald, Slusallek, Benthin, Wagner,
 /// "Interactive Rendering with Coherent Ray Tracing", Eurographics 2001; Boulos et al., "Packet-based Whitted
-/// and Distribution Ray Tracing", GI 2007). The control unit traverses the tree and broadcasts nodes and
-/// triangles to all PEs; no PE loads any of them. A node is visited if one ray of the block needs it.
+/// and Distribution Ray Tracing", GI 2007). A node is visited if one ray of the block needs it.
 namespace path_tracer {
 
 /// Packet stage: takes a block of rays through the whole tree. Its blocks are those of the ray queue.
-class PacketStage : public TreeStage {
+class PacketStage : public PacketBase {
  public:
   PacketStage(const StageContext& context, TreeContext& tree);
 
@@ -28,22 +26,13 @@ class PacketStage : public TreeStage {
     int place = 0;  ///< place of the rays' keys for it
   };
 
-  LaneMask begin(std::uint64_t step);
-  void test_lights(LaneMask seeks_light);
-  std::int32_t least_light(const LaneMask& rays);
-  LaneMask rays_with_light(std::int32_t light, const LaneMask& rays);
   void walk();
   LaneMask rays_that_want(const Entry& entry);
   void visit(const Entry& entry, const LaneMask& rays);
   void push_children(const MonoNode& node, int level, const LaneMask* enters_first);
-  void test_leaf(std::int32_t first_triangle, std::int32_t count, const LaneMask& rays);
 
-  const PacketKernels& packet_kernels_;
-  PolyPointer<TraversalRecord> record_;  ///< of the block in process
-  PolyPointer<PacketRecord> packet_;
+  PacketBlock block_;  ///< in process
   PacketKeys keys_;
-  MonoNodes nodes_;
-  LaneMask rays_;
   std::vector<Entry> stack_;
 };
 

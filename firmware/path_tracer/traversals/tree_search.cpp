@@ -1,6 +1,8 @@
 #include "firmware/path_tracer/traversals/tree_search.hpp"
 
+#include "firmware/path_tracer/traversals/large_packets.hpp"
 #include "firmware/path_tracer/traversals/packet_stage.hpp"
+#include "firmware/path_tracer/traversals/ray_streams.hpp"
 #include "firmware/path_tracer/traversals/refill.hpp"
 #include "firmware/path_tracer/traversals/shared_treelets.hpp"
 #include "firmware/path_tracer/traversals/temporary_bin.hpp"
@@ -12,6 +14,10 @@ std::unique_ptr<TreeTraversal> make_traversal(const StageContext& context, TreeC
   const Traversal traversal = context.config.traversal;
   if (traversal == Traversal::temporary_bin) return std::make_unique<TemporaryBinTraversal>(context, tree);
   if (traversal == Traversal::packets) return std::make_unique<PacketTraversal>(context, tree);
+  if (traversal == Traversal::large_packets)
+    return std::make_unique<PacketOfBlocksTraversal<LargePacketStage>>(context, tree);
+  if (traversal == Traversal::ray_streams)
+    return std::make_unique<PacketOfBlocksTraversal<RayStreamStage>>(context, tree);
   if (traversal == Traversal::shared_treelets) return std::make_unique<SharedTreeletTraversal>(context, tree);
   return std::make_unique<RefillTraversal>(context, tree);
 }

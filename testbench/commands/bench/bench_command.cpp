@@ -15,6 +15,7 @@ void add_bench_command(CLI::App& app) {
   add_bench_skips_command(command);
   add_bench_image_command(command);
   add_bench_adaptive_command(command);
+  add_bench_rivals_command(command);
 }
 
 }  // namespace testbench

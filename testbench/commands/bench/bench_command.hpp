@@ -16,6 +16,7 @@ void add_bench_error_command(CLI::App& bench);
 void add_bench_skips_command(CLI::App& bench);
 void add_bench_image_command(CLI::App& bench);
 void add_bench_adaptive_command(CLI::App& bench);
+void add_bench_rivals_command(CLI::App& bench);
 void add_bench_speed_command(CLI::App& bench);
 void add_bench_timing_command(CLI::App& bench);
 void add_bench_board_command(CLI::App& bench);

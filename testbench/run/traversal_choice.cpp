@@ -230,7 +230,10 @@ std::string choose_tree(const TriangleCount& count, const model::ChipConfig& chi
   if (given.count("resident_nodes") == 0) program.tree.resident_nodes = kAsManyAsFit;
   program.tree = overridden_tree(program, overrides);
   std::string reason;
-  if (given.count("traversal") == 0) {
+  if (given.count("traversal") == 0 && program.keeps_paths_in_sram()) {
+    program.traversal = Traversal::brute_force;
+    reason = "resident_paths: the whole scene is in each PE's SRAM";
+  } else if (given.count("traversal") == 0) {
     const TraversalChoice choice = choose_traversal(count.triangles, program.tree, chip);
     program.traversal = choice.traversal;
     reason = choice.reason;

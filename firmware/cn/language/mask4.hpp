@@ -4,7 +4,6 @@
 
 #include "firmware/cn/language/math.hpp"
 #include "firmware/cn/language/poly4.hpp"
-#include "firmware/cn/language/shortcut.hpp"
 
 /// Conditions and signs of vectors (poly4.hpp). The elements of a vector share a PE's enable bit, so a
 /// condition on them is four conditions of the PE.
@@ -79,23 +78,10 @@ inline poly4<double> abs(const poly4<double>& a) {
   return vector4::map(a, [](const poly<double>& element) { return abs(element); });
 }
 
-/// The sign bits of a vector, taken once for several vectors.
-class Signs4 {
- public:
-  explicit Signs4(const poly4<double>& of) : of_(of) { issue(InstructionClass::int16_alu, 4); }
-
-  /// Returns `a` with its sign changed where the vector's is negative.
-  poly4<double> flip(const poly4<double>& a) const {
-    issue(InstructionClass::int16_alu, 4);
-    return without_charging([&] {
-      return vector4::map(a, of_, [](const poly<double>& element, const poly<double>& sign) {
-        return flip_sign(element, sign);
-      });
-    });
-  }
-
- private:
-  poly4<double> of_;
-};
+/// Returns `a` with its signs changed where those of `by` are negative.
+inline poly4<double> flip_sign(const poly4<double>& a, const poly4<double>& by) {
+  return vector4::map(
+      a, by, [](const poly<double>& element, const poly<double>& sign) { return flip_sign(element, sign); });
+}
 
 }  // namespace cn

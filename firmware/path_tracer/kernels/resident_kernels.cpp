@@ -3,6 +3,7 @@
 #include "firmware/path_tracer/kernels/resident_kernels.hpp"
 
 #include "firmware/cn/language/indexed.hpp"
+#include "firmware/cn/language/shortcut.hpp"
 #include "firmware/path_tracer/kernels/camera_rays.hpp"
 #include "firmware/path_tracer/kernels/places.hpp"
 #include "firmware/path_tracer/kernels/search_by_vectors.hpp"

@@ -34,8 +34,8 @@ struct ResidentPath {
   std::int32_t light_face = kNoFace;
 };
 
-/// Vectors of four that the search keeps in SRAM, because a PE's registers hold four.
-inline constexpr int kSearchVectors = 8;
+/// Vectors of four that the search keeps in SRAM, because a PE's registers hold four: see RayVectors.
+inline constexpr int kSearchVectors = 6;
 
 /// Conditions on the paths of each PE, which the control unit keeps.
 using PathMasks = std::array<LaneMask, kMaxResidentPaths>;

@@ -54,19 +54,15 @@ class RayVectors {
 
   poly4<double> load(double ResidentRay::*field) const { return load_at(first_.field(field).offset_bytes); }
 
-  // Places for what the registers cannot keep during a test:
-  static constexpr int kDeterminant = 6;
-  static constexpr int kBehind = 7;
-  poly4<double> load(int vector) const { return sram_.load(cn::four_from(vector_ + 4 * vector)); }
-  void store(int vector, const poly4<double>& value) const {
-    sram_.store(cn::four_from(vector_ + 4 * vector), value);
-  }
-
  private:
   static constexpr int kAxes = 3;
   static constexpr int kFromVertex = 0;
   static constexpr int kMoment = 3;
 
+  poly4<double> load(int vector) const { return sram_.load(cn::four_from(vector_ + 4 * vector)); }
+  void store(int vector, const poly4<double>& value) const {
+    sram_.store(cn::four_from(vector_ + 4 * vector), value);
+  }
   poly4<double> load(vec3<double> ResidentRay::*field, int axis) const {
     return load_at(first_.field(field).offset_bytes + 8 * axis);
   }
@@ -87,7 +83,6 @@ class RayVectors {
   cn::PolyArray<double> sram_{cn::PolySpan{}};
   int vector_;
 };
-static_assert(kSearchVectors == RayVectors::kBehind + 1);
 static_assert(sizeof(ResidentPath) % 8 == 0);
 
 /// Whether the control unit need not move to the triangle's vertex: it is that of the triangle before.
@@ -98,21 +93,20 @@ inline bool shares_vertex(const MonoTriangles& triangles, int i) {
   return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/// Tests one triangle. Returns the rays for which it is as near as the nearest so far.
+/// Tests one triangle. Returns the rays for which it is as near as the nearest so far. Its numbers are those
+/// of Crossing, but for the sign of the distance. At most three vectors are alive besides an operand that is
+/// being loaded: what a PE has registers for.
 /// @param wanted rays that are searched for
 inline mask4 test_by_vectors(const RayVectors& rays, const TriangleRecord& triangle, const mask4& wanted) {
   const poly4<double> determinant = rays.dot_direction(triangle.back);
-  const cn::Signs4 signs(determinant);
-  rays.store(RayVectors::kDeterminant, determinant);
-  // Crossing's numbers, of which the distance has the other sign.
-  const poly4<double> behind = signs.flip(rays.dot_from_vertex(triangle.back));
-  rays.store(RayVectors::kBehind, behind);
-  const poly4<double> u = signs.flip(rays.dot_moment(triangle.edge2));
-  const poly4<double> minus_v = signs.flip(rays.dot_moment(triangle.edge1));
-  const poly4<double> size = cn::abs(rays.load(RayVectors::kDeterminant));
-  const mask4 inside = (u >= 0.0) & (minus_v <= 0.0) & (u - minus_v <= size) & (behind < 0.0);
+  const poly4<double> u = cn::flip_sign(rays.dot_moment(triangle.edge2), determinant);
+  const poly4<double> minus_v = cn::flip_sign(rays.dot_moment(triangle.edge1), determinant);
+  const poly4<double> size = cn::abs(determinant);
+  const mask4 within = (u >= 0.0) & (minus_v <= 0.0) & (u - minus_v <= size);
+  const poly4<double> behind = cn::flip_sign(rays.dot_from_vertex(triangle.back), determinant);
+  const mask4 inside = within & (behind < 0.0);
 
-  const poly4<double> distance = cn::abs(rays.load(RayVectors::kBehind));
+  const poly4<double> distance = cn::abs(behind);
   const poly4<double> left = distance * cn::abs(rays.load(&ResidentRay::determinant));
   const poly4<double> right = rays.load(&ResidentRay::distance) * size;
   const mask4 as_near = left == right;

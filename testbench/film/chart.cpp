@@ -58,7 +58,8 @@ std::string plot_of(const BarChart& chart) {
   script << "set title " << quoted(printable(chart.title)) << " noenhanced\nset ylabel "
          << quoted(chart.y_label)
          << " noenhanced\nset yrange [0:]\nset offsets 0.5,0.5,0,0\nset grid ytics\nunset key\n"
-            "set boxwidth 0.6\nset style fill solid 0.6\nset xtics noenhanced\n$bars << EOD\n";
+            "set bmargin 4\nset format y '%.0f'\nset boxwidth 0.6\nset style fill solid 0.6\nset xtics "
+            "noenhanced\n$bars << EOD\n";
   for (std::size_t i = 0; i < chart.bars.size(); ++i)
     script << i << " " << chart.bars[i].value << " " << quoted_lines(chart.bars[i].label) << "\n";
   script << "EOD\nplot $bars using 1:2:xticlabels(3) with boxes, "

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "firmware/cn/language/mask4.hpp"
 #include "firmware/path_tracer/geometry/triangle.hpp"
 #include "firmware/path_tracer/kernels/resident_kernels.hpp"
@@ -48,8 +50,19 @@ class RayVectors {
   poly4<double> dot_from_vertex(const vec3<double>& a) const {
     return dot(a, [&](int axis) { return load(kFromVertex + axis); });
   }
-  poly4<double> dot_moment(const vec3<double>& a) const {
-    return dot(a, [&](int axis) { return load(kMoment + axis); });
+  /// Returns the moments' products with two vectors, for which they are loaded once.
+  std::pair<poly4<double>, poly4<double>> dot_moment(const vec3<double>& a, const vec3<double>& b) const {
+    const poly4<double> x = load(kMoment);
+    poly4<double> of_a = x * a.x;
+    poly4<double> of_b = x * b.x;
+    const auto add = [&](int axis, double from_a, double from_b) {
+      const poly4<double> component = load(kMoment + axis);
+      of_a.assign_all_lanes(cn::multiply_add(component, from_a, of_a));
+      of_b.assign_all_lanes(cn::multiply_add(component, from_b, of_b));
+    };
+    add(1, a.y, b.y);
+    add(2, a.z, b.z);
+    return {of_a, of_b};
   }
 
   poly4<double> load(double ResidentRay::*field) const { return load_at(first_.field(field).offset_bytes); }
@@ -99,8 +112,9 @@ inline bool shares_vertex(const MonoTriangles& triangles, int i) {
 /// @param wanted rays that are searched for
 inline mask4 test_by_vectors(const RayVectors& rays, const TriangleRecord& triangle, const mask4& wanted) {
   const poly4<double> determinant = rays.dot_direction(triangle.back);
-  const poly4<double> u = cn::flip_sign(rays.dot_moment(triangle.edge2), determinant);
-  const poly4<double> minus_v = cn::flip_sign(rays.dot_moment(triangle.edge1), determinant);
+  const auto [along_edge2, along_edge1] = rays.dot_moment(triangle.edge2, triangle.edge1);
+  const poly4<double> u = cn::flip_sign(along_edge2, determinant);
+  const poly4<double> minus_v = cn::flip_sign(along_edge1, determinant);
   const poly4<double> size = cn::abs(determinant);
   const mask4 within = (u >= 0.0) & (minus_v <= 0.0) & (u - minus_v <= size);
   const poly4<double> behind = cn::flip_sign(rays.dot_from_vertex(triangle.back), determinant);

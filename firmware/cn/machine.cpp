@@ -134,6 +134,26 @@ int Machine::number_ascending(const LaneMask& chosen, PolyField<std::int32_t> nu
   return count;
 }
 
+int Machine::number_ascending(const LaneMask* chosen, int things, PolyField<std::int32_t> number) {
+  if (access_observer() != nullptr) {
+    access_observer()->kernel_begins("number_ascending");
+    observe_poly(Access::write, {number.offset_bytes, sizeof(std::int32_t)}, LaneMask::first(num_pes()));
+    access_observer()->kernel_ends();
+  }
+  charge_running_count();
+  issued_.root().counts[InstructionClass::int16_alu] += std::uint64_t(things - 1);  // the PE's own, summed
+  const int shift = number.offset_bytes % 8 * 8;
+  const std::uint64_t place = std::uint64_t{0xffffffffu} << shift;
+  std::uint64_t next = 0;
+  for (int pe = 0; pe < num_pes(); ++pe) {
+    std::uint64_t& word = poly_memory_.word(pe, number.offset_bytes / 8 * 8);
+    word = (word & ~place) | (next << shift);
+    for (int thing = 0; thing < things; ++thing) next += std::uint64_t{chosen[thing][pe]};
+  }
+  retire("number_ascending", issued_);
+  return static_cast<int>(next);
+}
+
 void Machine::observe_swazzle(const char* name, PolyField<std::uint64_t> value, int from_neighbour) {
   const int first = 0;
   const int last = num_pes() - 1;

@@ -99,6 +99,10 @@ class Machine {
   /// PEs save.
   int number_ascending(const LaneMask& chosen, PolyField<std::int32_t> number);
 
+  /// The same for several things in each PE, of which `chosen[0]` to `chosen[things - 1]` choose some: each
+  /// PE's `number` becomes the first of its own, and the others follow.
+  int number_ascending(const LaneMask* chosen, int things, PolyField<std::int32_t> number);
+
   /// Each PE takes the `value` of its left neighbour (up) or right neighbour (down). The PE at the end of the
   /// path keeps its own.
   void swazzle_up(PolyField<std::uint64_t> value);

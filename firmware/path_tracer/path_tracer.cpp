@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/path_tracer/resident/resident_tracer.hpp"
 #include "firmware/path_tracer/traversals/tree_search.hpp"
 
 namespace path_tracer {
@@ -173,6 +174,16 @@ void PathTracer::plan_path_stage() {
 
 void PathTracer::report_fill(int block) {
   machine_.report_fill(block, bins_.blocks[std::size_t(block)].live);
+}
+
+RunCounts trace_paths(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
+                      const Layout& layout, const Work& work, const PathTracer::Progress& progress) {
+  const auto run = [&](auto&& tracer) {
+    tracer.run(progress);
+    return tracer.counts();
+  };
+  return config.keeps_paths_in_sram() ? run(ResidentTracer(machine, kernels, config, layout, work))
+                                      : run(PathTracer(machine, kernels, config, layout, work));
 }
 
 }  // namespace path_tracer

@@ -77,4 +77,9 @@ class PathTracer {
   Pass pass_;
 };
 
+/// Runs the main program that the configuration asks for: PathTracer, or ResidentTracer. Throws what its
+/// constructor throws.
+RunCounts trace_paths(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
+                      const Layout& layout, const Work& work, const PathTracer::Progress& progress);
+
 }  // namespace path_tracer

@@ -8,10 +8,12 @@
 #include "testbench/commands/commands.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/commands/reproduce_claims.hpp"
+#include "testbench/commands/reproduce_fastest.hpp"
 #include "testbench/paper/paper_runs.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/json_file.hpp"
 #include "testbench/system/progress_bar.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {
@@ -37,6 +39,7 @@ struct ReproduceCommand {
   int jobs = 1;
   bool image = false;
   bool claims = false;
+  bool fastest = false;
   OutputFiles outputs;
 
   void run() const;
@@ -46,6 +49,7 @@ struct ReproduceCommand {
   std::vector<Cell> measure(const Scene& loaded, const RenderOptions& options) const;
   void measure_image(const Scene& loaded, RenderOptions options) const;
   void judge(const Scene& loaded, const RenderOptions& options) const;
+  void show_fastest(const Scene& loaded, const RenderOptions& options) const;
 };
 
 std::vector<Cell> ReproduceCommand::measure(const Scene& loaded, const RenderOptions& options) const {
@@ -120,6 +124,23 @@ void ReproduceCommand::judge(const Scene& loaded, const RenderOptions& options) 
   outputs.write("--json", [&] { return json_text(claims_json(judged, options), 2) + "\n"; });
 }
 
+void ReproduceCommand::show_fastest(const Scene& loaded, const RenderOptions& options) const {
+  ProgressBar bar("fastest");
+  const std::vector<FastestFigures> figures =
+      measure_fastest(loaded, options, jobs, [&](double share) { bar.show(share); });
+  const ImageDistance distance = compare_first_and_last(loaded, options);
+  std::printf("%s at %d x %d, %d samples a pixel; chip %s\n\n%s", loaded.name.c_str(), loaded.film.width,
+              loaded.film.height, samples, options.chip.preset.c_str(),
+              fastest_text(figures, distance).c_str());
+  outputs.write("--json", [&] { return json_text(fastest_json(figures, distance, options), 2) + "\n"; });
+  const std::string& plot = outputs.path("--plot");
+  if (plot.empty()) return;
+  if (can_draw_charts())
+    write_chart(plot, fastest_chart(figures));
+  else
+    print_note("--plot " + plot + " was left out: gnuplot is not installed");
+}
+
 Json to_json(const std::vector<Cell>& cells, const RenderOptions& options) {
   Json json;
   json["format"] = "csx600-reproduce-1";
@@ -156,8 +177,10 @@ void ReproduceCommand::run() const {
   size.require_valid();
   const Scene loaded = size.resized(scene.load());
   outputs.require_no_input(inputs_of(chip, loaded));
-  if (image || claims) {
-    image ? measure_image(loaded, options) : judge(loaded, options);
+  if (image || claims || fastest) {
+    if (image) measure_image(loaded, options);
+    if (claims) judge(loaded, options);
+    if (fastest) show_fastest(loaded, options);
     print_notes(loaded.notes);
     return;
   }
@@ -191,8 +214,19 @@ void add_reproduce_command(CLI::App& app) {
       .add_flag("--claims", state->claims,
                 "Judge what the paper says, claim by claim, by fresh runs (--size 120x120 takes a minute)")
       ->excludes("--image");
+  CLI::Option* const fastest =
+      command
+          .add_flag("--fastest", state->fastest,
+                    "Go from the paper's program to the fastest of this firmware, and say what each change "
+                    "brings")
+          ->excludes("--image")
+          ->excludes("--claims");
   add_check_hazards_flag(command, state->check_hazards);
-  state->outputs.add_to(command, "--json", "Also write the cells, or the claims, to this file");
+  state->outputs.add_to(command, "--json", "Also write the cells, the claims or the steps to this file");
+  state->outputs
+      .add_to(command, "--plot",
+              "Draw the steps of --fastest as SVG (name.svg) or PNG, if gnuplot is installed")
+      .needs(fastest);
   command.callback([state] { state->run(); });
 }
 

@@ -22,12 +22,11 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-std::string gnuplot_script(const LogChart& chart, const std::string& terminal, const std::string& output) {
+std::string plot_of(const LogChart& chart) {
   std::ostringstream script;
   script.precision(17);
-  script << "set terminal " << terminal << "\nset output " << quoted(output) << "\nset title "
-         << quoted(printable(chart.title)) << " noenhanced\nset xlabel " << quoted(chart.x_label)
-         << " noenhanced\nset ylabel " << quoted(chart.y_label)
+  script << "set title " << quoted(printable(chart.title)) << " noenhanced\nset xlabel "
+         << quoted(chart.x_label) << " noenhanced\nset ylabel " << quoted(chart.y_label)
          << " noenhanced\nset logscale xy\nset grid\nset key top right noenhanced\n";
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const ChartSeries& series = chart.series[i];
@@ -40,6 +39,31 @@ std::string gnuplot_script(const LogChart& chart, const std::string& terminal, c
     script << (i == 0 ? "plot " : ", ") << "$series" << i << " with linespoints linewidth 2 title "
            << quoted(chart.series[i].label);
   script << "\n";
+  return script.str();
+}
+
+/// A text in gnuplot's double quotes, between which "\n" begins a line.
+std::string quoted_lines(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c == '\n' ? std::string("\\n") : std::string(1, c);
+  }
+  return result + "\"";
+}
+
+std::string plot_of(const BarChart& chart) {
+  std::ostringstream script;
+  script.precision(17);
+  script << "set title " << quoted(printable(chart.title)) << " noenhanced\nset ylabel "
+         << quoted(chart.y_label)
+         << " noenhanced\nset yrange [0:]\nset offsets 0.5,0.5,0,0\nset grid ytics\nunset key\n"
+            "set bmargin 4\nset format y '%.0f'\nset boxwidth 0.6\nset style fill solid 0.6\nset xtics "
+            "noenhanced\n$bars << EOD\n";
+  for (std::size_t i = 0; i < chart.bars.size(); ++i)
+    script << i << " " << chart.bars[i].value << " " << quoted_lines(chart.bars[i].label) << "\n";
+  script << "EOD\nplot $bars using 1:2:xticlabels(3) with boxes, "
+            "'' using 1:2:(sprintf('%.0f', $2)) with labels offset 0,0.7 noenhanced\n";
   return script.str();
 }
 
@@ -56,6 +80,22 @@ bool is_whole(const std::filesystem::path& path, bool is_svg) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+/// @param plot what gnuplot draws
+void draw(const std::filesystem::path& path, const std::string& plot) {
+  const bool is_svg = path.extension() == ".svg";
+  const std::string terminal = is_svg ? "svg size 960,640 background 'white'" : "pngcairo size 960,640";
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::FILE* const gnuplot = popen("gnuplot", "w");
+    if (gnuplot == nullptr) throw RunError(path.string() + ": cannot start gnuplot");
+    const std::string script =
+        "set terminal " + terminal + "\nset output " + quoted(temporary.string()) + "\n" + plot;
+    std::fputs(script.c_str(), gnuplot);
+    if (pclose(gnuplot) != 0) throw RunError(path.string() + ": gnuplot failed");
+    if (!is_whole(temporary, is_svg))
+      throw RunError(path.string() + ": cannot be written: the file is cut short; is the disk full?");
+  });
+}
+
 }  // namespace
 
 bool can_draw_charts() {
@@ -67,16 +107,10 @@ bool can_draw_charts() {
 }
 
 void write_chart(const std::filesystem::path& path, const LogChart& chart) {
-  const bool is_svg = path.extension() == ".svg";
-  const std::string terminal = is_svg ? "svg size 960,640 background 'white'" : "pngcairo size 960,640";
-  write_atomically(path, [&](const std::filesystem::path& temporary) {
-    std::FILE* const gnuplot = popen("gnuplot", "w");
-    if (gnuplot == nullptr) throw RunError(path.string() + ": cannot start gnuplot");
-    std::fputs(gnuplot_script(chart, terminal, temporary.string()).c_str(), gnuplot);
-    if (pclose(gnuplot) != 0) throw RunError(path.string() + ": gnuplot failed");
-    if (!is_whole(temporary, is_svg))
-      throw RunError(path.string() + ": cannot be written: the file is cut short; is the disk full?");
-  });
+  draw(path, plot_of(chart));
+}
+void write_chart(const std::filesystem::path& path, const BarChart& chart) {
+  draw(path, plot_of(chart));
 }
 
 }  // namespace testbench

@@ -8,9 +8,9 @@
 namespace testbench {
 
 /// The options that choose_program() may choose.
-inline constexpr std::array<const char*, 9> kChosenOptions = {
-    "light_candidates", "estimator",      "traversal", "node_format",  "node_width",
-    "treelet_nodes",    "resident_nodes", "visits",    "stack_entries"};
+inline constexpr std::array<const char*, 10> kChosenOptions = {
+    "light_candidates", "estimator",      "traversal", "node_format",   "node_width",
+    "treelet_nodes",    "resident_nodes", "visits",    "stack_entries", "packet_blocks"};
 
 /// Chooses every option of the firmware that depends on the scene and was not given, as `render` does: how
 /// many lights a vertex has to choose from, the estimator, the way to find hits and its tree.

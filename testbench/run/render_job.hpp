@@ -85,9 +85,8 @@ class RenderJob {
         checker_ ? path_tracer::observed_kernels() : path_tracer::kernels(options_.level);
     path_tracer::Work work = options_.work;
     work.listed_samples = image_.camera_samples.size();
-    path_tracer::PathTracer tracer(machine, kernels, options_.program, image_.layout, work);
-    tracer.run(std::ref(relay_));
-    result_.counts = tracer.counts();
+    result_.counts =
+        path_tracer::trace_paths(machine, kernels, options_.program, image_.layout, work, std::ref(relay_));
     if (checker_ && !relay_.interrupted()) checker_->firmware_ends();
   }
 

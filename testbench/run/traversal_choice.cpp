@@ -243,6 +243,9 @@ std::string choose_tree(const TriangleCount& count, const model::ChipConfig& chi
   if (given.count("traversal") == 0 && program.is_stream()) {
     program.traversal = Traversal::brute_force;
     reason = "execution stream has no tree";
+  } else if (given.count("traversal") == 0 && program.keeps_paths_in_sram()) {
+    program.traversal = Traversal::brute_force;
+    reason = "resident_paths: the whole scene is in each PE's SRAM";
   } else if (given.count("traversal") == 0) {
     const TraversalChoice choice = choose_traversal(count.triangles, program.tree, chip);
     program.traversal = choice.traversal;

@@ -341,4 +341,30 @@ TEST(NumberAscending, EqualsAWalkAlongThePath) {
   }
 }
 
+/// Each PE's number is the count of what the PEs to its left have, and the work is that of one thing a PE
+/// and a sum of its own.
+TEST(NumberAscending, OfSeveralThingsInAPeIsARunningSum) {
+  std::mt19937 random(5);
+  for (const int width : {16, 96, 1024}) {
+    LaneMask chosen[3];
+    for (LaneMask& mask : chosen)
+      for (int pe = 0; pe < width; ++pe) mask.set(pe, random() % 2 == 0);
+    CountingMachine of_one(width);
+    of_one.number_ascending(chosen[0], {16});
+    CountingMachine machine(width);
+    for (int pe = 0; pe < width; ++pe) machine.poly_memory().word(pe, 16) = 0x5555555544444444u;
+    int sum = 0;
+    const int count = machine.number_ascending(chosen, 3, {20});
+    for (int pe = 0; pe < width; ++pe) {
+      ASSERT_EQ(machine.poly_memory().word(pe, 16), std::uint64_t(sum) << 32 | 0x44444444u) << "PE " << pe;
+      for (const LaneMask& mask : chosen) sum += int{mask[pe]};
+    }
+    EXPECT_EQ(count, sum);
+    EXPECT_EQ(machine.last_kernel, "number_ascending");
+    cn::IssueCounts expected = of_one.issued;
+    expected[InstructionClass::int16_alu] += 2;
+    EXPECT_TRUE(machine.issued == expected);
+  }
+}
+
 }  // namespace machine_test

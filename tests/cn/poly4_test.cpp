@@ -1,5 +1,6 @@
-#include "firmware/cn/language/poly4.hpp"
+#include "firmware/cn/language/mask4.hpp"
 
+#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -114,6 +115,40 @@ TYPED_TEST(CnPoly4, IssuesOneVectorInstructionAndItsMonoOperands) {
     poly4<TypeParam> copy = a;
     copy.assign_all_lanes(a);
   });
+}
+
+TYPED_TEST(CnPoly4, ComparesElementByElement) {
+  using cn::mask4;
+  const TypeParam middle = this->first[1][3];
+  const auto expect = [&](const std::function<mask4()>& compare, const auto& expected) {
+    PerPe<char> found[4];
+    for (PerPe<char>& of_element : found) of_element = this->template per_pe<char>();
+    const cn::IssueCounts issued = this->issued_by([&] {
+      const mask4 flags = compare();
+      for (std::size_t e = 0; e < 4; ++e) store(found[e], flags[e]);
+    });
+    for (std::size_t e = 0; e < 4; ++e)
+      for (std::size_t pe = 0; pe < std::size_t(this->num_pes()); ++pe)
+        EXPECT_EQ(bool(found[e][pe]), expected(this->first[e][pe])) << "PE " << pe << " element " << e;
+    EXPECT_EQ(issued[cn::Vector4Traits<TypeParam>::kAdd], 1u);
+    EXPECT_EQ(issued[InstructionClass::int16_alu], 4u);
+  };
+  const auto a = [&] { return this->vector(this->first); };
+  const auto same = [&] {
+    const poly<TypeParam> m(middle);
+    return poly4<TypeParam>(m, m, m, m);
+  };
+  expect([&] { return a() < middle; }, [&](TypeParam x) { return x < middle; });
+  expect([&] { return a() <= same(); }, [&](TypeParam x) { return x <= middle; });
+  expect([&] { return a() >= middle; }, [&](TypeParam x) { return x >= middle; });
+  expect([&] { return a() == same(); }, [&](TypeParam x) { return x == middle; });
+}
+
+using CnSigns4 = CnPoly4<double>;
+TEST_F(CnSigns4, AreThoseOfEachElement) {
+  expect([&] { return abs(vector(third)); }, [&](auto pe, auto e) { return std::abs(third[e][pe]); });
+  expect([&] { return flip_sign(vector(first), vector(third)); },
+         [&](auto pe, auto e) { return std::signbit(third[e][pe]) ? -first[e][pe] : first[e][pe]; });
 }
 
 TEST(CnPoly4Classes, BelongToTheType) {

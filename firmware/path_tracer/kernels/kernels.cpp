@@ -22,6 +22,7 @@ const PacketKernels& packet_kernel_table();
 const LargePacketKernels& large_packet_kernel_table();
 const RayStreamKernels& ray_stream_kernel_table();
 const StreamKernels& stream_kernel_table();
+const ResidentKernels& resident_kernel_table();
 cn::Kernel<IntersectArguments> tree_search_kernel();
 }  // namespace CN_LEVEL
 
@@ -400,6 +401,7 @@ const Kernels& kernel_table() {
       large_packet_kernel_table,
       ray_stream_kernel_table,
       stream_kernel_table,
+      resident_kernel_table,
   };
   return table;
 }

@@ -252,6 +252,7 @@ struct PacketKernels;
 struct LargePacketKernels;
 struct RayStreamKernels;
 struct StreamKernels;
+struct ResidentKernels;
 
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
@@ -278,6 +279,7 @@ struct Kernels {
   const LargePacketKernels& (*large_packet)();
   const RayStreamKernels& (*ray_stream)();
   const StreamKernels& (*stream)();
+  const ResidentKernels& (*resident)();
 };
 
 const Kernels& kernels(Level level);

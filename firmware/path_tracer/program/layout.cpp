@@ -56,10 +56,53 @@ void take_treelet_pool(Layout& layout, MonoAllocator& memory, int num_pes, const
                             std::uint64_t(config.tree.record_bytes()) / 8);
 }
 
+std::uint64_t slots_of(int num_pes, const ProgramConfig& config) {
+  return std::uint64_t(num_pes) * std::uint64_t(config.bin_blocks);
+}
+
+/// Takes what paths need on their way round the circular buffer.
+void take_bins(Layout& layout, MonoAllocator& memory, const SceneCounts& scene, int num_pes,
+               const ProgramConfig& config) {
+  const std::uint64_t slots = slots_of(num_pes, config);
+  const TreeShape& tree = config.tree;
+  if (config.uses_tree()) {
+    layout.ray_queue = memory.take<QueuedRay>("ray queue", slots);
+  } else {
+    layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
+  }
+  if (config.traversal == Traversal::temporary_bin)
+    layout.traversal_bin = memory.take<std::uint64_t>(
+        "traversal bin", std::uint64_t(num_pes) * std::uint64_t(traversal_bin_blocks(config)) *
+                             std::uint64_t(tree.record_bytes()) / 8);
+  if (config.traversal == Traversal::shared_treelets) {
+    layout.treelet_pool_blocks = treelet_pool_blocks(scene, num_pes, config);
+    take_treelet_pool(layout, memory, num_pes, config);
+  }
+  layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
+  if (config.uses_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
+  layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
+  layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots, layout.sizes.lighting);
+  layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);
+  layout.path_bin = memory.take<PathRecord>("path bin", slots, layout.sizes.path);
+  if (config.bins_hits()) {
+    layout.binned_hits =
+        memory.take<BinnedHit>("binned hits", slots * std::uint64_t(hit_kinds(config.features)));
+    layout.casts_bin = memory.take<cn::MonoAddress>("casts bin", slots);
+  }
+  if (config.is_stream()) {
+    layout.slot_states = memory.take<SlotState>("slot states", slots);
+    layout.finished_bin = memory.take<FinishedRecord>("finished bin", slots);
+    layout.path_numbers =
+        memory.take<std::uint64_t>("path numbers", ScanLevels(std::int32_t(slots)).all_words);
+  }
+  layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
+  layout.folds = memory.take<FoldRecord>("folds", slots);
+  layout.finished = memory.take<FinishedRecord>("finished paths", slots);
+}
+
 }  // namespace
 
 Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& config) {
-  const auto slots = std::uint64_t(num_pes) * std::uint64_t(config.bin_blocks);
   const TreeShape& tree = config.tree;
   Layout layout;
   MonoAllocator memory(layout.regions);
@@ -99,41 +142,12 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.sun_count = scene.suns;
   if (scene.suns > 0) layout.suns = memory.take<SunRecord>("suns", std::uint64_t(scene.suns));
   layout.scene_bytes = memory.used_bytes();
-  if (config.uses_tree()) {
-    layout.ray_queue = memory.take<QueuedRay>("ray queue", slots);
-  } else {
-    layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
-  }
-  if (config.traversal == Traversal::temporary_bin)
-    layout.traversal_bin = memory.take<std::uint64_t>(
-        "traversal bin", std::uint64_t(num_pes) * std::uint64_t(traversal_bin_blocks(config)) *
-                             std::uint64_t(tree.record_bytes()) / 8);
-  if (config.traversal == Traversal::shared_treelets) {
-    layout.treelet_pool_blocks = treelet_pool_blocks(scene, num_pes, config);
-    take_treelet_pool(layout, memory, num_pes, config);
-  }
-  layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
-  if (config.uses_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
-  layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
-  layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots, layout.sizes.lighting);
-  layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);
-  layout.path_bin = memory.take<PathRecord>("path bin", slots, layout.sizes.path);
-  if (config.bins_hits()) {
-    layout.binned_hits =
-        memory.take<BinnedHit>("binned hits", slots * std::uint64_t(hit_kinds(config.features)));
-    layout.casts_bin = memory.take<cn::MonoAddress>("casts bin", slots);
-  }
-  if (config.is_stream()) {
-    layout.slot_states = memory.take<SlotState>("slot states", slots);
-    layout.finished_bin = memory.take<FinishedRecord>("finished bin", slots);
-    layout.path_numbers =
-        memory.take<std::uint64_t>("path numbers", ScanLevels(std::int32_t(slots)).all_words);
-  }
-  layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
-  layout.folds = memory.take<FoldRecord>("folds", slots);
-  layout.finished = memory.take<FinishedRecord>("finished paths", slots);
+  if (!config.keeps_paths_in_sram()) take_bins(layout, memory, scene, num_pes, config);
+  const std::uint64_t results = config.keeps_paths_in_sram()
+                                    ? std::uint64_t(num_pes) * std::uint64_t(kResidentResults)
+                                    : slots_of(num_pes, config);
   for (auto& header : layout.results_header) header = memory.take<ResultsHeader>("results header", 1);
-  for (auto& half : layout.results) half = memory.take<RadianceRecord>("results", slots);
+  for (auto& half : layout.results) half = memory.take<RadianceRecord>("results", results);
   layout.total_bytes = memory.used_bytes();
   return layout;
 }

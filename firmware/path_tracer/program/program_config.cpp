@@ -11,6 +11,21 @@ void require(bool ok, const std::string& what, const std::string& found, const s
   if (!ok) throw ProgramError(what + ": found " + found + ", allowed is " + allowed);
 }
 
+/// The program without bins has one order of work, and its radiance is a part of it.
+void require_what_resident_paths_allow(const ProgramConfig& config) {
+  const std::string with = " with resident_paths " + std::to_string(config.resident_paths);
+  const auto require_value = [&](const char* option, const std::string& allowed) {
+    const std::string found = option_text(config, option);
+    require(found == allowed, option, found, allowed + with);
+  };
+  require_value("program", name_of(Program::full));
+  require_value("traversal", name_of(Traversal::brute_force));
+  require_value("scratchpad", name_of(Scratchpad::none));
+  require_value("execution", name_of(Execution::mtap));
+  require_value("light_candidates", "1");
+  require(!config.bins_hits(), "shading", name_of(config.shading), "every_lobe or present_lobes" + with);
+}
+
 }  // namespace
 
 void validate(const ProgramConfig& config) {
@@ -28,6 +43,7 @@ void validate(const ProgramConfig& config) {
           "brute_force with execution stream");
   require(!config.is_stream() || !config.bins_hits(), "shading", name_of(config.shading),
           "every_lobe or present_lobes with execution stream, which sorts no hits");
+  if (config.keeps_paths_in_sram()) require_what_resident_paths_allow(config);
   const NodeLayout& layout = config.tree.layout;
   require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
           "4 or 8 with node_format quantised8");

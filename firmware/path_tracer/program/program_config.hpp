@@ -77,6 +77,8 @@ enum class Scratchpad : std::uint8_t {
 };
 
 inline constexpr int kMaxBuffers = 8;
+inline constexpr int kMaxResidentPaths = 4;  ///< as many as a vector instruction has elements
+inline constexpr int kResidentResults = 8;   ///< that a PE collects until they are copied to mono memory
 inline constexpr int kMaxLightCandidates = 8;
 inline constexpr int kMaxPacketBlocks = 16;
 
@@ -111,6 +113,7 @@ struct ProgramConfig {
   bool folds_constant_textures = true;
   int built_for = kBuiltForScene;  ///< a row of kBuiltForTable: the scene alone, or with more features
   Shading shading = Shading::present_lobes;
+  int resident_paths = 0;  ///< paths that each PE keeps in its SRAM, beside the whole scene; 0: bins
   std::uint64_t seed = 1;
   /// Pixels from one camera ray to the next, cyclic over the film; must have no common divisor with the
   /// number of pixels. The image is the same; only the distance between rays of one block changes.
@@ -129,6 +132,8 @@ struct ProgramConfig {
   }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
+  /// Whether paths stay in the PEs' SRAM, instead of going round bins in mono memory.
+  bool keeps_paths_in_sram() const { return resident_paths > 0; }
   bool casts_shadow_rays() const { return program != Program::segments && features.lights.any(); }
   bool buffers_loads() const { return buffer_loads && n > 0; }
   bool buffers_saves() const { return buffer_saves && n > 0; }

@@ -130,6 +130,13 @@ void write_built_for(ProgramConfig& config, const OptionValue& value) {
 constexpr std::int64_t kMaxSegments = 1 << 30;
 constexpr std::int64_t kMaxStride = 1 << 30;
 
+ProgramOption resident_paths() {
+  return one_of<&ProgramConfig::resident_paths>(
+      "resident_paths", "paths", 0, {0, 1, kMaxResidentPaths},
+      "paths that each PE keeps in its SRAM beside the whole scene, instead of bins in mono memory (0); 4 "
+      "share vector instructions. For plain scenes that fit");
+}
+
 Options bins() {
   return {choice<&ProgramConfig::program>(
               "program", Program::full, kProgramNames,
@@ -165,6 +172,7 @@ Options bins() {
               "shading", Shading::present_lobes, kShadingNames,
               "hits that are shaded together: blocks of slots, for every lobe or for those present; or bins "
               "of hits, by their material's lobes, or by these and its textures"),
+          resident_paths(),
           choice<&ProgramConfig::scratchpad>(
               "scratchpad", Scratchpad::none, kScratchpadNames,
               "arrays of the scene that the firmware copies to the memory on the chip as it starts; fitting: "

@@ -28,7 +28,7 @@ std::string gnuplot_script(const LogChart& chart, const std::string& terminal, c
   script << "set terminal " << terminal << "\nset output " << quoted(output) << "\nset title "
          << quoted(printable(chart.title)) << " noenhanced\nset xlabel " << quoted(chart.x_label)
          << " noenhanced\nset ylabel " << quoted(chart.y_label)
-         << " noenhanced\nset logscale xy\nset grid\nset key top right noenhanced\n";
+         << " noenhanced\nset logscale xy\nset grid\nset key outside right top noenhanced\n";
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const ChartSeries& series = chart.series[i];
     script << "$series" << i << " << EOD\n";

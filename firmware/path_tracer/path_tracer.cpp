@@ -113,12 +113,16 @@ void PathTracer::run(const Progress& progress) {
   counts_.steps = steps_.steps() + radiance_.steps();
 }
 
+/// Blocks for which no camera ray is left stay empty. In stream execution, if they take part, their slots
+/// need a state that says so.
 void PathTracer::fill_bins() {
-  for (int block = 0; block < config_.bin_blocks && path_stage_->camera_rays().remaining() > 0; ++block) {
+  const bool takes_empty_blocks = config_.is_stream() && !config_.skips_empty_blocks;
+  for (int block = 0; block < config_.bin_blocks; ++block) {
+    if (path_stage_->camera_rays().remaining() == 0 && !takes_empty_blocks) break;
     steps_.run_without_loads(*path_stage_, block,
                              [&](std::uint64_t step) { path_stage_->fill(step, block); });
     report_fill(block);
-    take_into_next_pass(block);
+    if (bins_.blocks[std::size_t(block)].has_rays()) take_into_next_pass(block);
   }
 }
 

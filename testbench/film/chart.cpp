@@ -27,7 +27,7 @@ std::string plot_of(const LogChart& chart) {
   script.precision(17);
   script << "set title " << quoted(printable(chart.title)) << " noenhanced\nset xlabel "
          << quoted(chart.x_label) << " noenhanced\nset ylabel " << quoted(chart.y_label)
-         << " noenhanced\nset logscale xy\nset grid\nset key top right noenhanced\n";
+         << " noenhanced\nset logscale xy\nset grid\nset key outside right top noenhanced\n";
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const ChartSeries& series = chart.series[i];
     script << "$series" << i << " << EOD\n";

@@ -152,6 +152,16 @@ TEST(StreamExecution, NumbersPathsThatFillTheirSlots) {
   EXPECT_TRUE(same_paths(trace(scene, config, 24), expected));
 }
 
+/// Blocks that never had a path take part, too.
+TEST(StreamExecution, ProcessesEmptyBlocks) {
+  const testbench::Scene scene = test_support::small_cornell_box({5, 4});
+  ProgramConfig config = with(Execution::mtap, Program::direct, 1, 12);
+  const TracedPaths expected = trace(scene, config, 16);
+  config.execution = Execution::stream;
+  config.skips_empty_blocks = false;
+  EXPECT_TRUE(same_paths(trace(scene, config, 16), expected));
+}
+
 TEST(StreamExecution, RefusesWhatNeedsTheArray) {
   ProgramConfig config = with(Execution::stream, Program::full, 1, 8);
   EXPECT_NO_THROW(path_tracer::validate(config));

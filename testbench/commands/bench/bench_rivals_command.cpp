@@ -1,13 +1,14 @@
 #include <cstdio>
 #include <memory>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/benchmark/rivals.hpp"
 #include "testbench/commands/bench/bench_command.hpp"
 #include "testbench/commands/command_options.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/scene_file/generated_scene.hpp"
-#include "testbench/system/notes.hpp"
 #include "testbench/system/progress_bar.hpp"
+#include "testbench/system/standard_output.hpp"
 
 namespace testbench {
 namespace {

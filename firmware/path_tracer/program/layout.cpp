@@ -99,9 +99,9 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   layout.sun_count = scene.suns;
   if (scene.suns > 0) layout.suns = memory.take<SunRecord>("suns", std::uint64_t(scene.suns));
   layout.scene_bytes = memory.used_bytes();
-  if (config.uses_tree()) {
+  if (config.walks_tree()) {
     layout.ray_queue = memory.take<QueuedRay>("ray queue", slots);
-  } else {
+  } else if (!config.uses_tree()) {
     layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
   }
   if (config.traversal == Traversal::temporary_bin)
@@ -112,8 +112,9 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
     layout.treelet_pool_blocks = treelet_pool_blocks(scene, num_pes, config);
     take_treelet_pool(layout, memory, num_pes, config);
   }
-  layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
-  if (config.uses_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
+  if (!config.hands_rays_to_unit())
+    layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
+  if (config.walks_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
   layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
   layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots, layout.sizes.lighting);
   layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);

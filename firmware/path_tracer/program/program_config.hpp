@@ -55,6 +55,8 @@ enum class Traversal : std::uint8_t {
   packets,
   /// Through a tree of which a block of rays shares the piece that all of them need.
   shared_treelets,
+  /// Through a tree that the chip's search unit walks; PEs hand it their rays and load their hits.
+  ray_unit,
 };
 
 /// Which arrays of the scene the firmware copies to the memory on the chip, as it starts.
@@ -107,6 +109,9 @@ struct ProgramConfig {
   TreeShape tree;
 
   bool uses_tree() const { return traversal != Traversal::brute_force; }
+  bool hands_rays_to_unit() const { return traversal == Traversal::ray_unit; }
+  /// Whether PEs take rays through the tree, or the control unit does for them.
+  bool walks_tree() const { return uses_tree() && !hands_rays_to_unit(); }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
   bool casts_shadow_rays() const { return program != Program::segments && features.lights.any(); }

@@ -112,7 +112,7 @@ void declare_rest_of_chip(std::vector<ParameterInfo>& table) {
       "of 32 KB [Horowitz]");
   declare<&Energy::search_picojoules_per_byte>(table, "energy.search_picojoules_per_byte", "pJ/byte", 4.75,
                                                Confidence::inferred,
-                                               "the search unit's buffer, as the on-chip SRAM");
+                                               "the search unit's buffer, as energy.on_chip_sram_picojoules_per_byte [Horowitz]");
   declare<&Energy::search_clock_picojoules>(
       table, "energy.search_clock_picojoules", "pJ/cycle", 100, assumed,
       "clock of a search unit: that of ten PEs, whose area it has; 30 to 300");

@@ -53,7 +53,7 @@ void declare_search_unit(std::vector<ParameterInfo>& table) {
                                                      {64, 1 << 24, 64}, assumed,
                                                      "cache of each unit for nodes and triangles; 4 to 64 KiB"));
   table.push_back(integer<group, &Unit::cache_line_bytes>("search_unit.cache_line_bytes", "bytes", 64,
-                                                          {8, 4096, 1, true}, assumed,
+                                                          {8, 4096, 8}, assumed,
                                                           "a line: a packet of the network"));
   table.push_back(integer<group, &Unit::cache_ways>("search_unit.cache_ways", "ways", 4, {1, 64}, assumed,
                                                     "places that a line may have; the oldest is replaced"));

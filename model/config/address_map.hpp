@@ -48,8 +48,8 @@ class AddressMap {
 /// "0x1f".
 std::string hexadecimal(std::uint64_t value);
 
-/// The memories of the chip itself: the DDR from address 0, the on-chip SRAM and the search unit's buffer if it
-/// has them.
+/// The memories of the chip itself: the DDR from address 0, the on-chip SRAM and the search unit's buffer if
+/// it has them.
 AddressMap address_map(const ChipConfig& config);
 
 inline constexpr const char* kDdrRange = "ddr";
@@ -62,7 +62,8 @@ inline cn::MonoRange on_chip_sram_range(const ChipConfig& config) {
 }
 /// Of its buffer; empty if the chip has no search unit.
 inline cn::MonoRange search_unit_range(const ChipConfig& config) {
-  return {config.search_unit.first_address, config.search_unit.units > 0 ? config.search_unit.buffer_bytes : 0};
+  return {config.search_unit.first_address,
+          config.search_unit.units > 0 ? config.search_unit.buffer_bytes : 0};
 }
 
 }  // namespace model

@@ -82,14 +82,14 @@ struct ChipConfig {
     int hops;            ///< from an initiator to its port of the network
   } on_chip_sram;
 
-  /// A fixed-function unit that searches structures in mono memory for the PEs (cn::SearchFunction). No units:
-  /// the chip has none. Cycles are the unit's own but for its port and its distance.
+  /// A fixed-function unit that searches structures in mono memory for the PEs (cn::SearchFunction). No
+  /// units: the chip has none. Cycles are the unit's own but for its port and its distance.
   struct SearchUnit {
     int units;
-    int width;              ///< boxes that a unit tests at a time
-    int queries_in_flight;  ///< of each unit
-    int node_cycles;        ///< from the start of a node's last test to its result
-    int leaf_cycles;        ///< the same for leaves
+    int width;                 ///< boxes that a unit tests at a time
+    int queries_in_flight;     ///< of each unit
+    int node_cycles;           ///< from the start of a node's last test to its result
+    int leaf_cycles;           ///< the same for leaves
     int leaf_interval_cycles;  ///< from the start of a leaf's test to that of the next
     int clock_divider;         ///< cycles of the chip a cycle of the unit
     int cache_bytes;           ///< of each unit
@@ -125,12 +125,12 @@ struct ChipConfig {
     double pio_picojoules_per_byte;           ///< moved by the PIO engine
     double clear_connect_picojoules;          ///< a byte and hop
     double on_chip_sram_picojoules_per_byte;  ///< read or written
-    double search_box_picojoules;       ///< a test of a box by a search unit
-    double search_leaf_picojoules;      ///< a test of a leaf's triangle by a search unit
-    double search_line_picojoules;      ///< a line looked up in a search unit's cache, or brought there
-    double search_picojoules_per_byte;  ///< read from or written to a search unit's buffer
-    double search_clock_picojoules;     ///< a search unit and cycle, busy or not
-    double search_leakage_watts;        ///< of each search unit, with its cache
+    double search_box_picojoules;             ///< a test of a box by a search unit
+    double search_leaf_picojoules;            ///< a test of a leaf's triangle by a search unit
+    double search_line_picojoules;            ///< a line looked up in a search unit's cache, or brought there
+    double search_picojoules_per_byte;        ///< read from or written to a search unit's buffer
+    double search_clock_picojoules;           ///< a search unit and cycle, busy or not
+    double search_leakage_watts;              ///< of each search unit, with its cache
     double leakage_watts_per_pe;
     double leakage_watts;            ///< everything but the PEs
     double ddr_activate_picojoules;  ///< a page miss

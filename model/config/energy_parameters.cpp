@@ -110,9 +110,9 @@ void declare_rest_of_chip(std::vector<ParameterInfo>& table) {
       table, "energy.search_line_picojoules", "pJ", 120, Confidence::inferred,
       "a line of 64 bytes looked up or brought: 8 words of a 16 KB cache, 15 each, between 10 of 8 KB and 20 "
       "of 32 KB [Horowitz]");
-  declare<&Energy::search_picojoules_per_byte>(table, "energy.search_picojoules_per_byte", "pJ/byte", 4.75,
-                                               Confidence::inferred,
-                                               "the search unit's buffer, as energy.on_chip_sram_picojoules_per_byte [Horowitz]");
+  declare<&Energy::search_picojoules_per_byte>(
+      table, "energy.search_picojoules_per_byte", "pJ/byte", 4.75, Confidence::inferred,
+      "the search unit's buffer, as energy.on_chip_sram_picojoules_per_byte [Horowitz]");
   declare<&Energy::search_clock_picojoules>(
       table, "energy.search_clock_picojoules", "pJ/cycle", 100, assumed,
       "clock of a search unit: that of ten PEs, whose area it has; 30 to 300");

@@ -394,7 +394,8 @@ const std::vector<ParameterSource>& parameter_sources() {
        "S. Woop, J. Schmittler, P. Slusallek, RPU: A Programmable Ray Processing Unit for Realtime Ray "
        "Tracing, SIGGRAPH 2005"},
       {"Aladdin",
-       "Y. S. Shao et al., Aladdin, ISCA 2014: functional units of its file power_func.h, 40 nm, 2 ns a cycle"},
+       "Y. S. Shao et al., Aladdin, ISCA 2014: functional units of its file power_func.h, 40 nm, 2 ns a "
+       "cycle"},
       {"CACTI", "CACTI 7.0 (HewlettPackard/cacti), SRAM macros, ITRS high performance, 130 nm, run by us"},
       {"JESD79-2", "JEDEC, DDR2 SDRAM Specification"},
       {"Horowitz",

@@ -1,7 +1,7 @@
 #include "model/config/parameter_declaration.hpp"
 
-// The search unit is not the CSX600's: its cycles are those that a pipeline at the chip's clock would take, its
-// areas those of its operators, at 130 nm.
+// The search unit is not the CSX600's: its cycles are those that a pipeline at the chip's clock would take,
+// its areas those of its operators, at 130 nm.
 //
 //   40 nm to 130 nm: (130 / 40)^2 = 10.6 times the area
 //   a box:      6 fp32 subtractions, 6 fp32 multiplications, and a tenth for comparisons
@@ -28,9 +28,9 @@ void declare_search_unit(std::vector<ParameterInfo>& table) {
   table.push_back(of_stream(integer<group, &Unit::units>(
       "search_unit.units", "units", 0, {0, 64}, assumed,
       "fixed-function units that find rays' triangles beside the PEs, as in [RPU]; the CSX600 has none")));
-  table.push_back(integer<group, &Unit::width>(
-      "search_unit.width", "boxes", 4, {1, 8}, assumed,
-      "boxes that a unit tests at a time: a node of four in one cycle; 1 to 8"));
+  table.push_back(
+      integer<group, &Unit::width>("search_unit.width", "boxes", 4, {1, 8}, assumed,
+                                   "boxes that a unit tests at a time: a node of four in one cycle; 1 to 8"));
   table.push_back(integer<group, &Unit::queries_in_flight>(
       "search_unit.queries_in_flight", "queries", 32, {1, 1024}, assumed,
       "rays in flight in each unit, which hide its latencies as threads do in [RPU]; 8 to 64"));
@@ -46,15 +46,13 @@ void declare_search_unit(std::vector<ParameterInfo>& table) {
       "search_unit.leaf_interval_cycles", "cycles", 1, {1, 1024}, assumed,
       "from the start of a triangle's test to that of the next; a unit with an n-th of the multipliers takes "
       "n"));
-  table.push_back(integer<group, &Unit::clock_divider>(
-      "search_unit.clock_divider", "cycles", 1, {1, 64}, assumed,
-      "cycles of the chip for one of the unit's"));
-  table.push_back(integer<group, &Unit::cache_bytes>("search_unit.cache_bytes", "bytes", 16384,
-                                                     {64, 1 << 24, 64}, assumed,
-                                                     "cache of each unit for nodes and triangles; 4 to 64 KiB"));
-  table.push_back(integer<group, &Unit::cache_line_bytes>("search_unit.cache_line_bytes", "bytes", 64,
-                                                          {8, 4096, 8}, assumed,
-                                                          "a line: a packet of the network"));
+  table.push_back(integer<group, &Unit::clock_divider>("search_unit.clock_divider", "cycles", 1, {1, 64},
+                                                       assumed, "cycles of the chip for one of the unit's"));
+  table.push_back(
+      integer<group, &Unit::cache_bytes>("search_unit.cache_bytes", "bytes", 16384, {64, 1 << 24, 64},
+                                         assumed, "cache of each unit for nodes and triangles; 4 to 64 KiB"));
+  table.push_back(integer<group, &Unit::cache_line_bytes>(
+      "search_unit.cache_line_bytes", "bytes", 64, {8, 4096, 8}, assumed, "a line: a packet of the network"));
   table.push_back(integer<group, &Unit::cache_ways>("search_unit.cache_ways", "ways", 4, {1, 64}, assumed,
                                                     "places that a line may have; the oldest is replaced"));
   table.push_back(integer<group, &Unit::cache_hit_cycles>(
@@ -62,7 +60,7 @@ void declare_search_unit(std::vector<ParameterInfo>& table) {
       "from the look-up of a line, one a cycle, to its data"));
   table.push_back(of_stream(integer<group, &Unit::buffer_bytes>(
       "search_unit.buffer_bytes", "bytes", 131072, {1024, 1 << 24, 64}, assumed,
-      "rays and hits of all units together; 120 bytes a ray or more: bins of 8 blocks of 96")));
+      "rays and hits of all units together; 104 bytes a ray or more, so bins of 8 blocks of 96 fit")));
   table.push_back(of_stream(integer<group, &Unit::first_address>(
       "search_unit.first_address", "address", std::int64_t{1} << 41,
       {0, std::int64_t{1} << 60, std::int64_t{1} << 16}, assumed,
@@ -70,8 +68,9 @@ void declare_search_unit(std::vector<ParameterInfo>& table) {
   table.push_back(integer<group, &Unit::bytes_per_cycle>(
       "search_unit.bytes_per_cycle", "bytes/cycle", 16, {1, 4096}, assumed,
       "at the buffer's one port, taken as wide as that of the on-chip SRAM"));
-  table.push_back(integer<group, &Unit::hops>("search_unit.hops", "hops", 2, {0, 64}, assumed,
-                                              "from the PIO engine to the buffer, as clear_connect.hops_to_ddr"));
+  table.push_back(
+      integer<group, &Unit::hops>("search_unit.hops", "hops", 2, {0, 64}, assumed,
+                                  "from the PIO engine to the buffer, as clear_connect.hops_to_ddr"));
 }
 
 void declare_area(std::vector<ParameterInfo>& table) {
@@ -84,9 +83,9 @@ void declare_area(std::vector<ParameterInfo>& table) {
       "area.pe_mm2", "mm2", 0.8, kAnyArea, inferred,
       "a PE at 130 nm: fp64 multiplier and adder 0.26 [Aladdin], SRAM of 6 KiB 0.19 [CACTI], the rest "
       "assumed; 0.6 to 1.0"));
-  table.push_back(real<group, &Area::rest_mm2>(
-      "area.rest_mm2", "mm2", 80, kAnyArea, assumed,
-      "mono processor, caches, on-chip SRAM, network, interfaces and pads; 50 to 130, no die photo is public"));
+  table.push_back(real<group, &Area::rest_mm2>("area.rest_mm2", "mm2", 80, kAnyArea, assumed,
+                                               "mono processor, caches, on-chip SRAM, network, interfaces "
+                                               "and pads; 50 to 130, no die photo is public"));
   table.push_back(real<group, &Area::search_box_mm2>(
       "area.search_box_mm2", "mm2", 0.64, kAnyArea, inferred,
       "tester of a box: 6 x (fp32 add 0.003 + multiply 0.0062) at 40 nm [Aladdin], x 10.6 x 1.1; within a "

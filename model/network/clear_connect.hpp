@@ -12,8 +12,8 @@
 #include "model/config/address_map.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/network/at_router.hpp"
-#include "model/network/clear_connect_timing.hpp"
 #include "model/network/booked_traffic.hpp"
+#include "model/network/clear_connect_timing.hpp"
 #include "model/time/clock_domain.hpp"
 #include "model/time/event_queue.hpp"
 

@@ -4,7 +4,8 @@
 
 namespace model {
 
-/// Told what the search unit does when it is booked, which may be ahead of SystemC time, in the order of time.
+/// Told what the search unit does when it is booked, which may be ahead of SystemC time, in the order of
+/// time.
 class SearchObserver {
  public:
   virtual ~SearchObserver() = default;

@@ -79,10 +79,9 @@ void SearchTiming::report() {
 /// The unit with the most free places takes the next query, among equals the first.
 void SearchTiming::take_queries(Cycles now) {
   while (!queue_.empty()) {
-    const auto unit =
-        std::max_element(units_.begin(), units_.end(), [](const Unit& a, const Unit& b) {
-          return a.free_places.size() < b.free_places.size();
-        });
+    const auto unit = std::max_element(units_.begin(), units_.end(), [](const Unit& a, const Unit& b) {
+      return a.free_places.size() < b.free_places.size();
+    });
     if (unit->free_places.empty()) return;
     account(*unit, now);
     ++unit->in_flight;

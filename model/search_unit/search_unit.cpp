@@ -38,9 +38,8 @@ SearchUnit::SearchUnit(const sc_core::sc_module_name& name, const ChipConfig& co
                                                       return socket->nb_transport_bw(transaction, phase,
                                                                                      delay);
                                                     }});
-  at_initiator_.emplace(
-      *event_queue_, mono_socket,
-      AtInitiator::Owner{[](auto&) {}, [this](auto& packet) { return take_line(packet); }});
+  at_initiator_.emplace(*event_queue_, mono_socket,
+                        AtInitiator::Owner{[](auto&) {}, [this](auto& packet) { return take_line(packet); }});
 }
 
 void SearchUnit::program(std::shared_ptr<cn::SearchFunction> function) {
@@ -68,8 +67,7 @@ bool SearchUnit::accept(tlm::tlm_generic_payload& transaction) const {
 
 Cycles SearchUnit::move(tlm::tlm_generic_payload& transaction, Cycles ready) {
   const std::uint64_t bytes = transaction.get_data_length();
-  port_free_ =
-      std::max(ready, port_free_) + bytes_per_cycle_.quotient(bytes + bytes_per_cycle_.value() - 1);
+  port_free_ = std::max(ready, port_free_) + bytes_per_cycle_.quotient(bytes + bytes_per_cycle_.value() - 1);
   if (transaction.is_read()) {
     statistics_.bytes_read += bytes;
     buffer_.read(transaction.get_address(), transaction.get_data_ptr(), bytes, read_);

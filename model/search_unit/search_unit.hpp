@@ -8,9 +8,9 @@
 #include <tlm>
 #include <vector>
 
+#include "firmware/cn/chip/search_buffer.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/network/booked_traffic.hpp"
-#include "firmware/cn/chip/search_buffer.hpp"
 #include "model/search_unit/search_timing.hpp"
 #include "model/time/clock_domain.hpp"
 #include "model/time/event_queue.hpp"
@@ -88,7 +88,7 @@ class SearchUnit : public sc_core::sc_module, public BookedTraffic {
   Cycles port_free_ = 0;
   std::vector<int> searches_;     ///< under way, of each entry
   std::vector<Cycles> answered_;  ///< when the latest was over
-  SearchStatistics statistics_;  ///< of the buffer
+  SearchStatistics statistics_;   ///< of the buffer
   bool booking_ = false;
   tlm::tlm_generic_payload line_;
   std::vector<std::uint8_t> line_data_;

@@ -68,13 +68,14 @@ class Causes {
   int search_units() const { return run_.config.search_unit.units * run_.config.board.chips; }
   double search_joules() const {
     const model::SearchStatistics& search = run_.search_unit;
-    const double unit_cycles = double(run_.total_cycles) * search_units() / run_.config.search_unit.clock_divider;
+    const double unit_cycles =
+        double(run_.total_cycles) * search_units() / run_.config.search_unit.clock_divider;
     const double lines = double(search.cache_hits + search.cache_joins) + 2 * double(search.cache_misses);
-    return scale_ * (table_.search_box_picojoules * double(search.node_tests) +
-                     table_.search_leaf_picojoules * double(search.leaf_tests) +
-                     table_.search_line_picojoules * lines +
-                     table_.search_picojoules_per_byte * search_bytes() +
-                     table_.search_clock_picojoules * unit_cycles);
+    return scale_ *
+           (table_.search_box_picojoules * double(search.node_tests) +
+            table_.search_leaf_picojoules * double(search.leaf_tests) +
+            table_.search_line_picojoules * lines + table_.search_picojoules_per_byte * search_bytes() +
+            table_.search_clock_picojoules * unit_cycles);
   }
   /// Energy of `bytes` that went from node to node `hops` times.
   double network(int hops, double bytes) const {

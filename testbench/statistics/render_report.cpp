@@ -144,9 +144,9 @@ void add_traversal_row(const RenderRequest& request, const RenderResult& result,
     row += text(": %.2f nodes", double(unit.nodes) / rays) +
            text(", %.2f triangles tested a ray", double(unit.leaf_tests) / rays) +
            text(", the unit busy %.0f %% of the time",
-                100 * double(unit.busy_cycles) / (double(result.chip->firmware_cycles) *
-                                                  result.chip->config.search_unit.units *
-                                                  result.chip->config.board.chips));
+                100 * double(unit.busy_cycles) /
+                    (double(result.chip->firmware_cycles) * result.chip->config.search_unit.units *
+                     result.chip->config.board.chips));
   } else if (program.walks_tree()) {
     row += text(": %.2f leaves", double(counts.traversal.leaf_loads) / rays) +
            text(", %.2f treelets loaded a ray", double(counts.traversal.treelet_loads) / rays);

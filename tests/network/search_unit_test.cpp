@@ -4,7 +4,7 @@
 
 #include "model/csx600.hpp"
 #include "tests/support/pio_bench.hpp"
-#include "tests/support/search_chain.hpp"
+#include "tests/network/search_chain.hpp"
 
 namespace search_unit_test {
 
@@ -12,7 +12,7 @@ using model::Cycles;
 using model::TimingStyle;
 using sc_core::SC_NS;
 using sc_core::sc_time;
-using test_support::ChainSearch;
+using search_chain::ChainSearch;
 using test_support::kAll;
 using test_support::kPes;
 using tlm::TLM_READ_COMMAND;
@@ -20,8 +20,8 @@ using tlm::TLM_WRITE_COMMAND;
 
 constexpr std::uint64_t kUnit = std::uint64_t{1} << 41;
 
-/// The test chip with a unit one hop (2 cycles) away: 16 bytes a cycle into its buffer, all boxes at a time in
-/// 10 cycles, two queries in flight.
+/// The test chip with a unit one hop (2 cycles) away: 16 bytes a cycle into its buffer, all boxes at a time
+/// in 10 cycles, two queries in flight.
 model::ChipConfig chip_with_unit() {
   auto config = test_support::test_chip();
   model::ChipConfig::SearchUnit& unit = config.search_unit;
@@ -83,8 +83,7 @@ TEST_F(SearchUnit, AReadOfAnAnswerTakesUntilItIsFound) {
   // the DDR at 111; a page miss, 30 cycles, and 4 of data: 145; the link 4 cycles longer, 6 back.
   control.send(TLM_WRITE_COMMAND, kUnit, &query, 16, sc_time(100, SC_NS));
   std::uint64_t sum = 0;
-  const sc_time found =
-      control.send(TLM_READ_COMMAND, places().answers[0], &sum, 8, sc_time(100, SC_NS));
+  const sc_time found = control.send(TLM_READ_COMMAND, places().answers[0], &sum, 8, sc_time(100, SC_NS));
   EXPECT_EQ(sum, 100u);
   const model::SearchStatistics counted = unit->statistics();
   EXPECT_EQ(counted.queries, 1u);
@@ -156,7 +155,8 @@ TEST_F(SearchUnit, OthersOnTheNetworkComeBehindWhatTheUnitHasBookedBefore) {
   ChainSearch::Query query{0, 1};
   control.send(TLM_WRITE_COMMAND, kUnit, &query, 16, sc_time(100, SC_NS));
   std::uint64_t word = 0;
-  // The unit's line leaves at 105, before the host of a page that it opens comes at 106: a page hit behind it.
+  // The unit's line leaves at 105, before the host of a page that it opens comes at 106: a page hit behind
+  // it.
   const sc_time behind = host.send(TLM_READ_COMMAND, 8, &word, 8, sc_time(106, SC_NS));
   EXPECT_EQ(unit->statistics().cache_misses, 0u) << "the host asks nobody";
   const sc_time control_behind = control.send(TLM_READ_COMMAND, 16, &word, 8, sc_time(500, SC_NS));

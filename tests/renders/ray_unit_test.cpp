@@ -1,5 +1,5 @@
-// Renders whose rays are found by the chip's search unit: the image of brute force, equal to the bit, and what the
-// unit counts and costs.
+// Renders whose rays are found by the chip's search unit: the image of brute force, equal to the bit, and
+// what the unit counts and costs.
 
 #include <gtest/gtest.h>
 
@@ -112,7 +112,8 @@ TEST_F(RayUnitRenders, ShowTheImageOfBruteForceInEveryVariation) {
 
 /// Cut-outs, glass, textures, many lights, an environment, coincident triangles: whatever rays are for.
 TEST_F(RayUnitRenders, ShowEveryScene) {
-  for (const char* name : {"textured", "glass", "materials", "many_lights", "environment", "niche", "outdoors"}) {
+  for (const char* name :
+       {"textured", "glass", "materials", "many_lights", "environment", "niche", "outdoors"}) {
     const Scene scene = shipped(name);
     RenderOptions options = options_for(Program::full);
     RenderOptions plain = options_for(Program::full, Traversal::brute_force);
@@ -179,10 +180,11 @@ TEST_F(RayUnitRenders, RefuseChipsThatHaveNoRoomForThem) {
   const Scene scene = test_support::small_cornell_box({8, 8});
   RenderOptions options = options_for(Program::full);
   options.chip.search_unit.buffer_bytes = 65536;
-  EXPECT_EQ(refusal(scene, options),
-            "bin_blocks: found 8, allowed is at most 5 with traversal ray_unit: rays of 96 PEs a block in the "
-            "search unit's buffer of search_unit.buffer_bytes (65536)");
-  options.program.bin_blocks = 5;
+  EXPECT_EQ(
+      refusal(scene, options),
+      "bin_blocks: found 8, allowed is at most 6 with traversal ray_unit: rays of 96 PEs a block in the "
+      "search unit's buffer of search_unit.buffer_bytes (65536)");
+  options.program.bin_blocks = 6;
   EXPECT_EQ(refusal(scene, options), "");
   options.chip.search_unit.units = 0;
   EXPECT_EQ(refusal(scene, options),
@@ -195,10 +197,11 @@ TEST_F(RayUnitRenders, TakeBinsThatFitUnlessTheyAreGiven) {
   options.chip.search_unit.buffer_bytes = 65536;
   path_tracer::ProgramConfig program = options.program;
   testbench::choose_tree(testbench::TriangleCount(36), options.chip, {"traversal"}, program);
-  EXPECT_EQ(program.bin_blocks, 5);
+  EXPECT_EQ(program.bin_blocks, 6);
   program = options.program;
-  testbench::choose_tree(testbench::TriangleCount(36), options.chip, {"traversal", "bin_blocks"}, options.program);
-  EXPECT_EQ(options.program.bin_blocks, 8);
+  EXPECT_THROW(testbench::choose_tree(testbench::TriangleCount(36), options.chip, {"traversal", "bin_blocks"},
+                                      program),
+               testbench::InputError);
 }
 
 }  // namespace ray_unit_test

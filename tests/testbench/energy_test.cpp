@@ -153,11 +153,11 @@ TEST(Energy, OfASearchUnitIsItsCountsTimesTheTable) {
   run.bus_search_unit.bytes = 1280;
   const model::ChipConfig::Energy& table = run.config.energy;
   const Energy energy = testbench::energy_of(run);
-  EXPECT_DOUBLE_EQ(joules_of(energy, "search_unit"),
-                   4e-12 * (table.search_box_picojoules * 400 + table.search_leaf_picojoules * 30 +
-                            table.search_line_picojoules * (50 + 7 + 2 * 20) +
-                            table.search_picojoules_per_byte * 1200 +
-                            table.search_clock_picojoules * 3 * 1e6 / 2));
+  EXPECT_DOUBLE_EQ(
+      joules_of(energy, "search_unit"),
+      4e-12 * (table.search_box_picojoules * 400 + table.search_leaf_picojoules * 30 +
+               table.search_line_picojoules * (50 + 7 + 2 * 20) + table.search_picojoules_per_byte * 1200 +
+               table.search_clock_picojoules * 3 * 1e6 / 2));
   EXPECT_DOUBLE_EQ(joules_of(energy, "leakage") - without, 3 * table.search_leakage_watts * energy.seconds);
   const int hops = run.config.clear_connect.hops_to_ddr;
   EXPECT_NEAR(joules_of(energy, "clear_connect") - network,

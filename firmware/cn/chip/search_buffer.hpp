@@ -25,8 +25,7 @@ class SearchBuffer {
 
   /// Within the buffer; addresses count from its start.
   void write(std::uint64_t address, const std::uint8_t* from, std::uint64_t bytes);
-  void read(std::uint64_t address, std::uint8_t* to, std::uint64_t bytes,
-            const SearchFunction::Read& mono);
+  void read(std::uint64_t address, std::uint8_t* to, std::uint64_t bytes, const SearchFunction::Read& mono);
 
   std::uint64_t bytes() const { return bytes_.size(); }
   int entries() const { return places_.entries; }

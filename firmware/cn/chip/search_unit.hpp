@@ -33,7 +33,7 @@ class SearchFunction {
   using Read = std::function<void(MonoAddress from, void* to, std::size_t bytes)>;
   struct Query {
     const std::uint8_t* query = nullptr;
-    std::vector<std::uint8_t*> answers;       ///< as answer_bytes() says
+    std::vector<std::uint8_t*> answers;        ///< as answer_bytes() says
     std::vector<SearchStep>* steps = nullptr;  ///< filled, in order
   };
 

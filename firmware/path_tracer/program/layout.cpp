@@ -114,7 +114,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
   }
   if (!config.hands_rays_to_unit())
     layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
-  if (config.walks_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
+  if (config.walks_tree())
+    layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
   layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
   layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots, layout.sizes.lighting);
   layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);

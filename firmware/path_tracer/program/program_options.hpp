@@ -21,8 +21,8 @@ inline constexpr std::array kLightSamplingNames = {"area", "solid_angle"};
 inline constexpr std::array kEstimatorNames = {"light", "mis", "per_lobe"};
 inline constexpr std::array kShadingNames = {"every_lobe", "present_lobes", "material_bins", "texture_bins"};
 inline constexpr std::array kScratchpadNames = {"none", "nodes", "triangles", "fitting"};
-inline constexpr std::array kTraversalNames = {
-    "brute_force", "temporary_bin", "refill", "lock_step", "packets", "shared_treelets", "ray_unit"};
+inline constexpr std::array kTraversalNames = {"brute_force", "temporary_bin",   "refill",  "lock_step",
+                                               "packets",     "shared_treelets", "ray_unit"};
 inline constexpr std::array kNodeFormatNames = {"fp64", "fp32", "quantised8"};
 
 inline const char* name_of(Program program) {

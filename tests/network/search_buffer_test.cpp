@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/search_chain.hpp"
+#include "tests/network/search_chain.hpp"
 
 namespace search_buffer_test {
 
-using test_support::ChainSearch;
+using search_chain::ChainSearch;
 
 class SearchBufferTest : public ::testing::Test {
  protected:

@@ -35,12 +35,11 @@ model::ChipConfig::SearchUnit test_unit() {
 class Bench {
  public:
   explicit Bench(const model::ChipConfig::SearchUnit& unit, Cycles latency = 40)
-      : timing(unit,
-               {[this, latency](int of, cn::MonoAddress first, Cycles at) {
-                  fetches.emplace_back(of, first, at);
-                  timing.arrived(of, first, at + latency);
-                },
-                [this](int entry, Cycles at) { answered[entry] = at; }}) {}
+      : timing(unit, {[this, latency](int of, cn::MonoAddress first, Cycles at) {
+                        fetches.emplace_back(of, first, at);
+                        timing.arrived(of, first, at + latency);
+                      },
+                      [this](int entry, Cycles at) { answered[entry] = at; }}) {}
 
   void run() {
     while (timing.next()) timing.step();
@@ -148,8 +147,7 @@ TEST(SearchTiming, SlowMemoryIsHiddenByQueriesInFlight) {
     model::ChipConfig::SearchUnit unit = test_unit();
     unit.queries_in_flight = in_flight;
     Bench bench(unit, 100);
-    for (int i = 0; i < 16; ++i)
-      bench.timing.start(i, {{Kind::node, 2, cn::MonoAddress(i) * 64, 64}}, 0);
+    for (int i = 0; i < 16; ++i) bench.timing.start(i, {{Kind::node, 2, cn::MonoAddress(i) * 64, 64}}, 0);
     bench.run();
     Cycles last = 0;
     for (const auto& [entry, at] : bench.answered) last = std::max(last, at);

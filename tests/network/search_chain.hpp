@@ -6,7 +6,7 @@
 
 #include "firmware/cn/chip/search_unit.hpp"
 
-namespace test_support {
+namespace search_chain {
 
 /// A search whose steps and answers a test can count by hand: a query names a chain of nodes in mono memory
 /// and how many of them to visit; the answer is the sum of their values and, in an array of its own, the
@@ -53,4 +53,4 @@ class ChainSearch : public cn::SearchFunction {
   }
 };
 
-}  // namespace test_support
+}  // namespace search_chain

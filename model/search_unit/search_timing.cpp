@@ -20,14 +20,14 @@ void SearchTiming::schedule(Cycles at, What what, int place, std::uint64_t line)
   std::push_heap(events_.begin(), events_.end(), later);
 }
 
-void SearchTiming::start(int entry, const std::vector<cn::SearchStep>& steps, Cycles at) {
+void SearchTiming::start(int search, const std::vector<cn::SearchStep>& steps, Cycles at) {
   if (free_coming_.empty()) {
     free_coming_.push_back(static_cast<int>(coming_.size()));
     coming_.emplace_back();
   }
   const int number = free_coming_.back();
   free_coming_.pop_back();
-  coming_[std::size_t(number)] = {entry, steps};
+  coming_[std::size_t(number)] = {search, steps};
   schedule(at, What::query, number);
 }
 
@@ -164,7 +164,7 @@ void SearchTiming::finish(int place, Cycles now) {
   account(unit, now);
   --unit.in_flight;
   unit.free_places.push_back(place);
-  owner_.answered(in_flight_[std::size_t(place)].query.entry, now);
+  owner_.answered(in_flight_[std::size_t(place)].query.search, now);
   take_queries(now);
 }
 

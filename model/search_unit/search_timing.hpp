@@ -31,13 +31,13 @@ class SearchTiming {
   struct Owner {
     /// A line leaves for memory; arrived() tells when it is back.
     std::function<void(int unit, cn::MonoAddress first, Cycles at)> fetch;
-    std::function<void(int entry, Cycles at)> answered;
+    std::function<void(int search, Cycles at)> answered;
   };
 
   SearchTiming(const ChipConfig::SearchUnit& config, Owner owner);
 
-  /// A query is in the buffer from `at` on.
-  void start(int entry, const std::vector<cn::SearchStep>& steps, Cycles at);
+  /// A query is in the buffer from `at` on. @param search a number that answered() tells
+  void start(int search, const std::vector<cn::SearchStep>& steps, Cycles at);
   void arrived(int unit, cn::MonoAddress first, Cycles at);
   /// The unit gets another function: its caches are empty.
   void forget_lines();
@@ -62,7 +62,7 @@ class SearchTiming {
     std::uint64_t line;  ///< of a line
   };
   struct Query {
-    int entry = 0;
+    int search = 0;
     std::vector<cn::SearchStep> steps;
   };
   struct InFlight {

@@ -19,10 +19,7 @@ SearchUnit::SearchUnit(const sc_core::sc_module_name& name, const ChipConfig& co
       buffer_(search_unit_range(config)),
       timing_(config.search_unit,
               {[this](int unit, cn::MonoAddress first, Cycles at) { fetch(unit, first, at); },
-               [this](int entry, Cycles at) {
-                 --searches_[std::size_t(entry)];
-                 answered_[std::size_t(entry)] = at;
-               }}),
+               [this](int search, Cycles at) { take_answer(search - first_search_, at); }}),
       read_([this](cn::MonoAddress from, void* to, std::size_t bytes) { read_mono(from, to, bytes); }),
       line_data_(line_bytes_),
       event_queue_(event_queue) {
@@ -43,6 +40,7 @@ SearchUnit::SearchUnit(const sc_core::sc_module_name& name, const ChipConfig& co
 }
 
 void SearchUnit::program(std::shared_ptr<cn::SearchFunction> function) {
+  first_search_ += buffer_.entries();
   buffer_.program(std::move(function));
   searches_.assign(std::size_t(buffer_.entries()), 0);
   answered_.assign(std::size_t(buffer_.entries()), 0);
@@ -93,7 +91,14 @@ Cycles SearchUnit::write(tlm::tlm_generic_payload& transaction, Cycles arrival) 
 
 void SearchUnit::start(int entry, Cycles at) {
   ++searches_[std::size_t(entry)];
-  timing_.start(entry, buffer_.steps(entry, read_), at);
+  timing_.start(first_search_ + entry, buffer_.steps(entry, read_), at);
+}
+
+/// Searches that a program before has left under way have nobody to tell.
+void SearchUnit::take_answer(int entry, Cycles at) {
+  if (entry < 0) return;
+  --searches_[std::size_t(entry)];
+  answered_[std::size_t(entry)] = at;
 }
 
 bool SearchUnit::are_found(const cn::SearchBuffer::Entries& entries) const {

@@ -66,6 +66,7 @@ class SearchUnit : public sc_core::sc_module, public BookedTraffic {
   Cycles move(tlm::tlm_generic_payload& transaction, Cycles ready);
   Cycles write(tlm::tlm_generic_payload& transaction, Cycles arrival);
   void start(int entry, Cycles at);
+  void take_answer(int entry, Cycles at);
   bool are_found(const cn::SearchBuffer::Entries& entries) const;
   Cycles found_at(const cn::SearchBuffer::Entries& entries) const;
   void fetch(int unit, cn::MonoAddress first, Cycles at);
@@ -86,6 +87,7 @@ class SearchUnit : public sc_core::sc_module, public BookedTraffic {
   SearchTiming timing_;
   cn::SearchFunction::Read read_;
   Cycles port_free_ = 0;
+  int first_search_ = 0;          ///< number of the first entry's searches, by which programs are told apart
   std::vector<int> searches_;     ///< under way, of each entry
   std::vector<Cycles> answered_;  ///< when the latest was over
   SearchStatistics statistics_;   ///< of the buffer

@@ -3,8 +3,8 @@
 #include "model/search_unit/search_unit.hpp"
 
 #include "model/csx600.hpp"
-#include "tests/support/pio_bench.hpp"
 #include "tests/network/search_chain.hpp"
+#include "tests/support/pio_bench.hpp"
 
 namespace search_unit_test {
 
@@ -103,6 +103,21 @@ TEST_F(SearchUnit, AReadOfAnAnswerTakesUntilItIsFound) {
   EXPECT_EQ(unit->statistics().answer_wait_cycles, counted.answer_wait_cycles + 11)
       << "its request comes at 1004, behind the query on the link";
   EXPECT_GT(found, sc_time(150, SC_NS));
+}
+
+TEST_F(SearchUnit, AnotherProgramDoesNotWaitForTheSearchesOfTheOneBefore) {
+  build_with_unit();
+  elaborate();
+  ChainSearch::Query query{0, 16};
+  control.send(TLM_WRITE_COMMAND, kUnit, &query, 16, sc_time(100, SC_NS));
+  unit->program(search);
+  query.nodes = 1;
+  control.send(TLM_WRITE_COMMAND, kUnit, &query, 16, sc_time(5000, SC_NS));
+  std::uint64_t sum = 0;
+  const sc_time found = control.send(TLM_READ_COMMAND, places().answers[0], &sum, 8, sc_time(5000, SC_NS));
+  EXPECT_EQ(sum, 100u);
+  EXPECT_LT(found, sc_time(5200, SC_NS));
+  EXPECT_EQ(unit->statistics().queries, 2u);
 }
 
 TEST_F(SearchUnit, DebugAccessesTakeNoTimeAndThereIsNoPointer) {

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "testbench/machine/native_machine.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/run/traversal_choice.hpp"
 #include "testbench/scene_file/generated_scene.hpp"
@@ -190,6 +191,12 @@ TEST_F(RayUnitRenders, RefuseChipsThatHaveNoRoomForThem) {
   EXPECT_EQ(refusal(scene, options),
             "traversal: found ray_unit, allowed is a way that the chip has: it is without a search unit "
             "(search_unit.units is 0)");
+}
+
+TEST(SearchUnitOfAMachine, IsProgrammedOnlyWhereThereIsOne) {
+  testbench::NativeMachine machine(8, 1024, 1024);
+  EXPECT_EQ(machine.search_unit().bytes, 0u);
+  EXPECT_THROW(machine.program_search_unit(nullptr), cn::MachineFault);
 }
 
 TEST_F(RayUnitRenders, TakeBinsThatFitUnlessTheyAreGiven) {

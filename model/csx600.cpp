@@ -31,14 +31,18 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
       on_chip_sram(config_.on_chip_sram.size_bytes > 0
                        ? std::make_unique<OnChipSram>("on_chip_sram", config_, clock, event_queue.get())
                        : nullptr),
+      search_unit(config_.search_unit.units > 0
+                      ? std::make_unique<SearchUnit>("search_unit", config_, clock, event_queue.get())
+                      : nullptr),
       host_link("host_link", config_, event_queue.get()) {
   host_link.socket.bind(clear_connect.host_socket);
-  clear_connect.host_traffic.bind(host_link.traffic);
+  clear_connect.booked_traffic.bind(host_link.traffic);
   if (mono_ddr) clear_connect.ddr_socket.bind(mono_ddr->socket);
   if (on_chip_sram)
     clear_connect.bind(on_chip_sram->socket, kOnChipSramRange, on_chip_sram_range(config_),
                        {config_.on_chip_sram.bytes_per_cycle, config_.on_chip_sram.hops});
   for (const std::unique_ptr<MtapArray>& array : arrays_) join(*array);
+  if (search_unit) join_search_unit();
   if (memory == MonoMemory::bound_outside || arrays() > 1) share_memory();
 }
 
@@ -68,9 +72,18 @@ void Csx600::join(MtapArray& array) {
     array.control = clear_connect.bind_initiator(array.control_unit.mono_socket);
     array.pio = clear_connect.bind_initiator(array.pio_engine.mono_socket);
   }
-  array.control_unit.host_traffic.bind(host_link.traffic);
+  array.control_unit.booked_traffic.bind(host_link.traffic);
   array.control_unit.follow(clear_connect.map());
   array.pio_engine.follow(clear_connect.map());
+}
+
+void Csx600::join_search_unit() {
+  clear_connect.bind(search_unit->socket, kSearchUnitRange, search_unit_range(config_),
+                     {config_.search_unit.bytes_per_cycle, config_.search_unit.hops});
+  search_initiator_ = clear_connect.bind_initiator(search_unit->mono_socket);
+  clear_connect.booked_traffic.bind(search_unit->traffic);
+  control_unit.booked_traffic.bind(search_unit->traffic);
+  control_unit.join(*search_unit);
 }
 
 std::unique_ptr<Bridge> join_by_bridge(Csx600& near, Csx600& far, cn::MonoAddress first) {

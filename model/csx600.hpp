@@ -13,6 +13,7 @@
 #include "model/mtap_array.hpp"
 #include "model/network/bridge.hpp"
 #include "model/network/clear_connect.hpp"
+#include "model/search_unit/search_unit.hpp"
 #include "model/time/clock_domain.hpp"
 
 namespace model {
@@ -28,9 +29,9 @@ enum class MonoMemory : std::uint8_t {
 ///
 ///   control_unit --port--> pio_engine --+
 ///        |                     |        +--> clear_connect --> mono_ddr
-///     pe_array <-- poly_sram <-+        |                +---> on_chip_sram
+///     pe_array <-- poly_sram <-+        |                +---> on_chip_sram, search_unit
 ///        control_unit (data cache) -----+
-///        host_link ---------------------+
+///        host_link, search_unit --------+
 ///
 /// A CSX700 is the same with two arrays (chip.arrays), each with a control unit, PEs and a PIO engine of its
 /// own, that share network, memories and host link. Each array runs firmware of its own.
@@ -59,6 +60,7 @@ class Csx600 : public sc_core::sc_module {
   ClearConnect clear_connect;
   const std::unique_ptr<MonoDdr> mono_ddr;         ///< null if the memory is bound outside
   const std::unique_ptr<OnChipSram> on_chip_sram;  ///< null if the chip has none
+  const std::unique_ptr<SearchUnit> search_unit;   ///< likewise
   HostLink host_link;
 
   const ChipConfig& config() const { return config_; }
@@ -73,10 +75,20 @@ class Csx600 : public sc_core::sc_module {
   OnChipSramStatistics on_chip_sram_statistics() const {
     return on_chip_sram ? on_chip_sram->statistics() : OnChipSramStatistics{};
   }
+  SearchStatistics search_statistics() const {
+    return search_unit ? search_unit->statistics() : SearchStatistics{};
+  }
+  /// Of the search unit's lines; all zero if the chip has none.
+  ClearConnectStatistics search_unit_traffic() const {
+    return search_unit ? clear_connect.statistics(search_initiator_) : ClearConnectStatistics{};
+  }
 
  private:
   std::vector<std::unique_ptr<MtapArray>> built_arrays();
   void join(MtapArray& array);
+  void join_search_unit();
+
+  Initiator search_initiator_ = Initiator::host;  ///< the search unit at the network
 };
 
 /// Lets the arrays of `near` reach the DDR of `far` from mono address `first` on, over a bridge of near's

@@ -71,6 +71,10 @@ void Machine::start_thread(int, const std::string& name, std::function<void()>) 
   throw MachineFault("start of thread '" + name + "': this machine has one thread");
 }
 
+void Machine::program_search_unit(std::shared_ptr<SearchFunction>) {
+  throw MachineFault("program of a search unit: this machine has none");
+}
+
 int Machine::count(const LaneMask& lanes) {
   issued_.clear();
   issued_.root().counts[InstructionClass::reduce] = 1;

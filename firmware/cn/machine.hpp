@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "firmware/cn/chip/label.hpp"
 #include "firmware/cn/chip/mono_range.hpp"
+#include "firmware/cn/chip/search_unit.hpp"
 #include "firmware/cn/chip/transfer.hpp"
 #include "firmware/cn/language/kernel.hpp"
 
@@ -127,6 +129,12 @@ class Machine {
   /// The mono addresses of the memory on the chip, for data that are used often: all transfers reach it as
   /// they reach the rest of mono memory, sooner and beside it. No bytes if the machine has none.
   virtual MonoRange scratchpad() const { return {}; }
+
+  /// The mono addresses of the search unit's buffer (search_places()). Transfers write queries there; one
+  /// that reads answers takes until they are found. No bytes if the machine has no such unit.
+  virtual MonoRange search_unit() const { return {}; }
+  /// Tells the search unit what to do with the queries that follow. Throws MachineFault if there is none.
+  virtual void program_search_unit(std::shared_ptr<SearchFunction> function);
 
   /// Labels the kernels and requests that follow.
   void set_label(const Label& label) { label_ = label; }

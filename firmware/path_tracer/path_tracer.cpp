@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/path_tracer/resident/resident_tracer.hpp"
+#include "firmware/path_tracer/traversals/ray_unit_search.hpp"
 #include "firmware/path_tracer/traversals/tree_search.hpp"
 
 namespace path_tracer {
@@ -16,7 +17,7 @@ int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
   return std::max(
       {RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
        config.is_stream() ? std::max(StreamPathStage::load_bytes(config), ScanStage::kLoadBytes) : 0,
-       config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
+       config.walks_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
@@ -24,7 +25,7 @@ int save_buffer_bytes(const ProgramConfig& config) {
       {RayStage::save_bytes(config), IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
        config.is_stream() ? std::max(StreamPathStage::save_bytes(config), ScanStage::kSaveBytes) : 0,
        config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
-       config.uses_tree() ? TreeStage::save_bytes(config) : 0});
+       config.walks_tree() ? TreeStage::save_bytes(config) : 0});
 }
 
 ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
@@ -39,8 +40,10 @@ cn::Machine& with_semaphores_and_stack(cn::Machine& machine) {
   return machine;
 }
 
-std::unique_ptr<RaySearch> make_search(const StageContext& context) {
+/// @param layout of `context`; a search may move bins
+std::unique_ptr<RaySearch> make_search(const StageContext& context, Layout& layout) {
   if (context.config.traversal == Traversal::brute_force) return std::make_unique<BruteForceSearch>(context);
+  if (context.config.hands_rays_to_unit()) return std::make_unique<RayUnitSearch>(context, layout);
   return std::make_unique<TreeSearch>(context);
 }
 
@@ -87,7 +90,7 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       rings_(make_rings(machine, config_, layout.layers)),
       radiance_rings_(make_radiance_rings(machine, config_)),
       scratchpad_(machine, rings_.loads, config_.scratchpad, layout_),
-      search_(make_search(context(rings_))),
+      search_(make_search(context(rings_), layout_)),
       intersection_stage_(context(rings_), search_->rays()),
       hit_binning_(config_.bins_hits() ? std::make_unique<HitBinning>(context(rings_), search_->rays())
                                        : nullptr),

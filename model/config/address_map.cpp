@@ -45,6 +45,7 @@ AddressMap address_map(const ChipConfig& config) {
   AddressMap map;
   map.add(kDdrRange, {0, config.ddr.size_bytes});
   if (config.on_chip_sram.size_bytes > 0) map.add(kOnChipSramRange, on_chip_sram_range(config));
+  if (config.search_unit.units > 0) map.add(kSearchUnitRange, search_unit_range(config));
   return map;
 }
 

@@ -48,14 +48,22 @@ class AddressMap {
 /// "0x1f".
 std::string hexadecimal(std::uint64_t value);
 
-/// The memories of the chip itself: the DDR from address 0, and the on-chip SRAM if it has one.
+/// The memories of the chip itself: the DDR from address 0, the on-chip SRAM and the search unit's buffer if
+/// it has them.
 AddressMap address_map(const ChipConfig& config);
 
 inline constexpr const char* kDdrRange = "ddr";
 inline constexpr const char* kOnChipSramRange = "on_chip_sram";
 
+inline constexpr const char* kSearchUnitRange = "search_unit";
+
 inline cn::MonoRange on_chip_sram_range(const ChipConfig& config) {
   return {config.on_chip_sram.first_address, config.on_chip_sram.size_bytes};
+}
+/// Of its buffer; empty if the chip has no search unit.
+inline cn::MonoRange search_unit_range(const ChipConfig& config) {
+  return {config.search_unit.first_address,
+          config.search_unit.units > 0 ? config.search_unit.buffer_bytes : 0};
 }
 
 }  // namespace model

@@ -82,6 +82,26 @@ struct ChipConfig {
     int hops;            ///< from an initiator to its port of the network
   } on_chip_sram;
 
+  /// A fixed-function unit that searches structures in mono memory for the PEs (cn::SearchFunction). No
+  /// units: the chip has none. Cycles are the unit's own but for its port and its distance.
+  struct SearchUnit {
+    int units;
+    int width;                 ///< boxes that a unit tests at a time
+    int queries_in_flight;     ///< of each unit
+    int node_cycles;           ///< from the start of a node's last test to its result
+    int leaf_cycles;           ///< the same for leaves
+    int leaf_interval_cycles;  ///< from the start of a leaf's test to that of the next
+    int clock_divider;         ///< cycles of the chip a cycle of the unit
+    int cache_bytes;           ///< of each unit
+    int cache_line_bytes;
+    int cache_ways;
+    int cache_hit_cycles;
+    std::uint64_t buffer_bytes;  ///< of queries and answers, for all units together
+    std::uint64_t first_address;
+    int bytes_per_cycle;
+    int hops;
+  } search_unit;
+
   /// The chips behind one host link, in a row: the link ends at the first, and bridges join neighbours.
   struct Board {
     int chips;
@@ -105,6 +125,12 @@ struct ChipConfig {
     double pio_picojoules_per_byte;           ///< moved by the PIO engine
     double clear_connect_picojoules;          ///< a byte and hop
     double on_chip_sram_picojoules_per_byte;  ///< read or written
+    double search_box_picojoules;             ///< a test of a box by a search unit
+    double search_leaf_picojoules;            ///< a test of a leaf's triangle by a search unit
+    double search_line_picojoules;            ///< a line looked up in a search unit's cache, or brought there
+    double search_picojoules_per_byte;        ///< read from or written to a search unit's buffer
+    double search_clock_picojoules;           ///< a search unit and cycle, busy or not
+    double search_leakage_watts;              ///< of each search unit, with its cache
     double leakage_watts_per_pe;
     double leakage_watts;            ///< everything but the PEs
     double ddr_activate_picojoules;  ///< a page miss
@@ -113,6 +139,16 @@ struct ChipConfig {
     double ddr_refresh_picojoules;   ///< a refresh
     double ddr_background_watts;
   } energy;
+
+  /// Area to first order. Nothing else depends on it.
+  struct Area {
+    double pe_mm2;            ///< a PE with its SRAM and its part of the array's wires
+    double rest_mm2;          ///< everything but PEs and search units
+    double search_box_mm2;    ///< what tests a box at a time
+    double search_leaf_mm2;   ///< what begins a test of a triangle each cycle
+    double search_query_mm2;  ///< state of a query in flight
+    double sram_mm2_per_kib;  ///< of caches and buffers of search units
+  } area;
 };
 
 }  // namespace model

@@ -123,6 +123,29 @@ void require(bool holds, const ChipConfig& config, std::string_view key, const s
                                             parameter_text(config, other_key) + ")"));
 }
 
+void validate_search_unit(const ChipConfig& config, std::string_view origin) {
+  const ChipConfig::SearchUnit& unit = config.search_unit;
+  if (unit.units == 0) return;
+  const std::string multiple = "a multiple of";
+  require(unit.cache_bytes % (unit.cache_line_bytes * unit.cache_ways) == 0, config,
+          "search_unit.cache_bytes",
+          "a multiple of search_unit.cache_line_bytes (" + std::to_string(unit.cache_line_bytes) + ") times",
+          "search_unit.cache_ways", origin);
+  require(unit.cache_line_bytes <= config.clear_connect.packet_bytes, config, "search_unit.cache_line_bytes",
+          "at most", "clear_connect.packet_bytes", origin);
+  require(config.ddr.page_bytes % unit.cache_line_bytes == 0, config, "ddr.page_bytes", multiple,
+          "search_unit.cache_line_bytes", origin);
+  require(unit.first_address >= config.ddr.size_bytes, config, "search_unit.first_address", "at least",
+          "ddr.size_bytes", origin);
+  const ChipConfig::OnChipSram& sram = config.on_chip_sram;
+  const bool is_before = unit.first_address + unit.buffer_bytes <= sram.first_address;
+  const bool is_behind = unit.first_address >= sram.first_address + sram.size_bytes;
+  require(sram.size_bytes == 0 || is_before || is_behind, config, "search_unit.first_address",
+          "addresses outside the on-chip SRAM, which begins at", "on_chip_sram.first_address", origin);
+  require(config.chip.arrays == 1, config, "search_unit.units", "0 on a chip of several arrays,",
+          "chip.arrays", origin);
+}
+
 }  // namespace
 
 std::string_view confidence_name(Confidence confidence) {
@@ -219,6 +242,7 @@ void validate(const ChipConfig& config, std::string_view origin) {
           multiple, "control.cache_line_bytes", origin);
   require(sram.size_bytes % line_bytes == 0, config, "on_chip_sram.size_bytes", multiple,
           "control.cache_line_bytes", origin);
+  validate_search_unit(config, origin);
   require(ddr.refresh_interval_cycles == 0 || ddr.refresh_cycles < ddr.refresh_interval_cycles, config,
           "ddr.refresh_cycles", "less than", "ddr.refresh_interval_cycles", origin);
 }

@@ -99,6 +99,25 @@ void declare_rest_of_chip(std::vector<ParameterInfo>& table) {
       table, "energy.on_chip_sram_picojoules_per_byte", "pJ/byte", 4.75, Confidence::inferred,
       "read from or written to the on-chip SRAM: 38 pJ for 8 bytes, between 20 of a 32 KB and 100 of a 1 MB "
       "cache [Horowitz]; its leakage is in energy.leakage_watts");
+  declare<&Energy::search_box_picojoules>(
+      table, "energy.search_box_picojoules", "pJ", 28, Confidence::inferred,
+      "a box by a search unit: 6 fp32 additions and multiplications without register file [Horowitz]; "
+      "scaled as a PE's, so rather too much; within a factor of 3");
+  declare<&Energy::search_leaf_picojoules>(
+      table, "energy.search_leaf_picojoules", "pJ", 351, Confidence::inferred,
+      "a triangle by a search unit: 18 fp64 multiplications, 15 additions [Horowitz]; as above");
+  declare<&Energy::search_line_picojoules>(
+      table, "energy.search_line_picojoules", "pJ", 120, Confidence::inferred,
+      "a line of 64 bytes looked up or brought: 8 words of a 16 KB cache, 15 each, between 10 of 8 KB and 20 "
+      "of 32 KB [Horowitz]");
+  declare<&Energy::search_picojoules_per_byte>(
+      table, "energy.search_picojoules_per_byte", "pJ/byte", 4.75, Confidence::inferred,
+      "the search unit's buffer, as energy.on_chip_sram_picojoules_per_byte [Horowitz]");
+  declare<&Energy::search_clock_picojoules>(
+      table, "energy.search_clock_picojoules", "pJ/cycle", 100, assumed,
+      "clock of a search unit: that of ten PEs, whose area it has; 30 to 300");
+  declare<&Energy::search_leakage_watts>(table, "energy.search_leakage_watts", "W", 0.08, assumed,
+                                         "of a search unit, as ten PEs");
   declare<&Energy::leakage_watts_per_pe>(
       table, "energy.leakage_watts_per_pe", "W/PE", 0.008, assumed,
       "of a PE; with the rest of the chip 1 W, a tenth of its power, as leakage was at 0.13 um");

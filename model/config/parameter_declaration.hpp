@@ -72,5 +72,8 @@ ParameterInfo real(std::string key, std::string unit, double default_value, Real
 
 /// Declares the energy parameters (energy_parameters.cpp).
 void declare_energy(std::vector<ParameterInfo>& table);
+/// Declare the search unit's parameters and areas (search_unit_parameters.cpp).
+void declare_search_unit(std::vector<ParameterInfo>& table);
+void declare_area(std::vector<ParameterInfo>& table);
 
 }  // namespace model

@@ -356,9 +356,11 @@ Parameters declare_parameters() {
   declare_ddr_geometry(table);
   declare_ddr_timing(table);
   declare_on_chip_sram(table);
+  declare_search_unit(table);
   declare_board(table);
   declare_host(table);
   declare_energy(table);
+  declare_area(table);
   return table;
 }
 
@@ -388,6 +390,13 @@ const std::vector<ParameterSource>& parameter_sources() {
       {"S15c", "US patent 7,966,475, threads and their scheduler"},
       {"S15e", "US patent 7,802,079, scoreboard and enable stack"},
       {"S15g", "US patent 7,363,472, access indicators"},
+      {"RPU",
+       "S. Woop, J. Schmittler, P. Slusallek, RPU: A Programmable Ray Processing Unit for Realtime Ray "
+       "Tracing, SIGGRAPH 2005"},
+      {"Aladdin",
+       "Y. S. Shao et al., Aladdin, ISCA 2014: functional units of its file power_func.h, 40 nm, 2 ns a "
+       "cycle"},
+      {"CACTI", "CACTI 7.0 (HewlettPackard/cacti), SRAM macros, ITRS high performance, 130 nm, run by us"},
       {"JESD79-2", "JEDEC, DDR2 SDRAM Specification"},
       {"Horowitz",
        "M. Horowitz, Computing's Energy Problem (and what we can do about it), ISSCC 2014: 45 nm, 0.9 V"},

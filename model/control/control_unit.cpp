@@ -14,7 +14,7 @@ ControlUnit::ControlUnit(const sc_core::sc_module_name& name, const ChipConfig& 
       config_(config),
       approximately_timed_(event_queue != nullptr),
       pe_array_(pe_array),
-      time_(clock, ledger_, pio, host_traffic,
+      time_(clock, ledger_, pio, booked_traffic,
             approximately_timed_ ? TimingStyle::approximately_timed : TimingStyle::loosely_timed),
       semaphores_(semaphore_names()),
       host_semaphores_(semaphores_, time_, poly_memory()),
@@ -81,6 +81,11 @@ void ControlUnit::start_thread(int priority, const std::string& name, std::funct
                            "': an approximately timed chip runs one hardware thread; run it loosely timed");
   threads_.start(priority, name, std::move(body));
   if (timed_) threads_.let_higher_priority_run();
+}
+
+void ControlUnit::program_search_unit(std::shared_ptr<cn::SearchFunction> function) {
+  if (search_unit_ == nullptr) return Machine::program_search_unit(std::move(function));
+  search_unit_->program(std::move(function));
 }
 
 void ControlUnit::report_fill(int block, const cn::LaneMask& slots) {

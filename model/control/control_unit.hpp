@@ -15,10 +15,11 @@
 #include "model/control/mono_access.hpp"
 #include "model/control/semaphores.hpp"
 #include "model/control/time_coupling.hpp"
-#include "model/network/host_traffic.hpp"
+#include "model/network/booked_traffic.hpp"
 #include "model/observe/control_observer.hpp"
 #include "model/pe_array/pe_array.hpp"
 #include "model/pio/pio_port.hpp"
+#include "model/search_unit/search_unit.hpp"
 #include "model/time/clock_domain.hpp"
 #include "model/time/event_queue.hpp"
 
@@ -42,7 +43,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   sc_core::sc_export<SemaphorePort> semaphores{"semaphores"};
   sc_core::sc_export<TimePort> time{"time"};
   tlm_utils::simple_initiator_socket<ControlUnit> mono_socket{"mono_socket"};
-  HostTrafficPort host_traffic{"host_traffic"};
+  BookedTrafficPort booked_traffic{"booked_traffic"};
 
   using Firmware = std::function<void(cn::Machine&)>;
 
@@ -87,6 +88,9 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   /// memories.
   void follow(const AddressMap& map) { mono_access_.follow(map); }
 
+  /// Firmware may program this unit, which lives as long as the control unit.
+  void join(SearchUnit& unit) { search_unit_ = &unit; }
+
   // cn::Machine:
   void sem_signal(cn::Semaphore semaphore) override;
   void sem_wait(cn::Semaphore semaphore) override;
@@ -94,6 +98,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   void timed(bool on) override;
   void start_thread(int priority, const std::string& name, std::function<void()> body) override;
   cn::MonoRange scratchpad() const override { return on_chip_sram_range(config_); }
+  cn::MonoRange search_unit() const override { return search_unit_range(config_); }
+  void program_search_unit(std::shared_ptr<cn::SearchFunction> function) override;
   void report_fill(int block, const cn::LaneMask& slots) override;
 
   // SemaphorePort:
@@ -119,6 +125,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   }
 
   const ChipConfig& config_;
+  SearchUnit* search_unit_ = nullptr;
   const bool approximately_timed_;
   PeArray& pe_array_;
   CycleLedger ledger_;

@@ -39,7 +39,7 @@ void TimeCoupling::synchronise() {
 
 void TimeCoupling::wait_for(const sc_core::sc_event& event, std::optional<Cycles> at_the_latest) {
   if (at_the_latest) {
-    if (host_traffic_.size() > 0) host_traffic_->book_until(*at_the_latest);
+    book_until(booked_traffic_, *at_the_latest);
     sc_core::wait(clock_.time_at(*at_the_latest) - sc_core::sc_time_stamp(), event);
   } else {
     sc_core::wait(event);
@@ -53,7 +53,7 @@ void TimeCoupling::wait_behind_host(Cycles cycle) {
 }
 
 void TimeCoupling::wait_until(Cycles cycle) {
-  if (host_traffic_.size() > 0) host_traffic_->book_until(cycle);
+  book_until(booked_traffic_, cycle);
   const sc_core::sc_time target = clock_.time_at(cycle);
   if (target > sc_core::sc_time_stamp()) sc_core::wait(target - sc_core::sc_time_stamp());
 }

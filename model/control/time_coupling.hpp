@@ -5,7 +5,7 @@
 
 #include "model/config/timing_style.hpp"
 #include "model/control/cycle_ledger.hpp"
-#include "model/network/host_traffic.hpp"
+#include "model/network/booked_traffic.hpp"
 #include "model/pio/pio_port.hpp"
 #include "model/time/clock_domain.hpp"
 
@@ -21,8 +21,8 @@ namespace model {
 class TimeCoupling {
  public:
   TimeCoupling(const ClockDomain& clock, CycleLedger& ledger, sc_core::sc_port<PioPort>& pio,
-               HostTrafficPort& host_traffic, TimingStyle timing)
-      : clock_(clock), ledger_(ledger), pio_(pio), host_traffic_(host_traffic), timing_(timing) {}
+               BookedTrafficPort& booked_traffic, TimingStyle timing)
+      : clock_(clock), ledger_(ledger), pio_(pio), booked_traffic_(booked_traffic), timing_(timing) {}
 
   /// Others than this chip may use its mono memory.
   void share_memory() { memory_is_shared_ = true; }
@@ -56,7 +56,7 @@ class TimeCoupling {
  private:
   /// How far the firmware may be ahead of SystemC time; std::nullopt: without end.
   std::optional<sc_core::sc_time> allowed_lead() const;
-  bool host_is_transferring() const { return host_traffic_.size() > 0 && host_traffic_->in_progress(); }
+  bool host_is_transferring() const { return in_progress(booked_traffic_); }
   void settle_pio_beside_host(Cycles cycle);
   /// Waits until `cycle`, and lets the host's process come first in it.
   void wait_behind_host(Cycles cycle);
@@ -65,7 +65,7 @@ class TimeCoupling {
   ClockDomain clock_;
   CycleLedger& ledger_;
   sc_core::sc_port<PioPort>& pio_;
-  HostTrafficPort& host_traffic_;
+  BookedTrafficPort& booked_traffic_;
   TimingStyle timing_;
   bool memory_is_shared_ = false;
 };

@@ -9,7 +9,7 @@
 #include "model/config/chip_config.hpp"
 #include "model/host_link/host_link_statistics.hpp"
 #include "model/host_link/host_packets.hpp"
-#include "model/network/host_traffic.hpp"
+#include "model/network/booked_traffic.hpp"
 #include "model/observe/memory_observer.hpp"
 #include "model/transaction/at_initiator.hpp"
 #include "model/transaction/payload_pool.hpp"
@@ -20,10 +20,10 @@ namespace model {
 /// their packets contend on the chip's network with those of the PIO engine and the control unit.
 ///
 /// Loosely timed: a transfer's end is that of the link itself, since the link is far narrower than the
-/// network; its packets only hold up others (HostTraffic). Approximately timed, with an event queue: the
+/// network; its packets only hold up others (BookedTraffic). Approximately timed, with an event queue: the
 /// calling process waits, and the transfer ends with the link or with the memory's last response, whichever
 /// is later.
-class HostLink : public sc_core::sc_module, public HostTraffic {
+class HostLink : public sc_core::sc_module, public BookedTraffic {
  public:
   static constexpr std::uint64_t kMaxDmaBytes = HostLinkTiming::kMaxDmaBytes;
   /// Packets that may be between the link's bridge and the memory at a time (assumed); approximately timed
@@ -31,7 +31,7 @@ class HostLink : public sc_core::sc_module, public HostTraffic {
   static constexpr std::size_t kOutstandingPackets = 16;
 
   tlm_utils::simple_initiator_socket<HostLink> socket{"socket"};
-  sc_core::sc_export<HostTraffic> traffic{"traffic"};
+  sc_core::sc_export<BookedTraffic> traffic{"traffic"};
 
   HostLink(const sc_core::sc_module_name& name, const ChipConfig& config, EventQueue* event_queue = nullptr);
 

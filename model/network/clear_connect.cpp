@@ -71,8 +71,7 @@ void ClearConnect::register_socket(InitiatorSocket& socket, Initiator initiator)
 
 void ClearConnect::b_transport(int initiator, tlm::tlm_generic_payload& transaction,
                                sc_core::sc_time& delay) {
-  if (initiator != int(Initiator::host) && host_traffic.size() > 0)
-    host_traffic->book_until(cycle_of_delay(clock_, delay));
+  if (initiator != int(Initiator::host)) book_until(booked_traffic, cycle_of_delay(clock_, delay));
   const bool moves_data = transaction.is_read() || transaction.is_write();
   const std::uint64_t bytes = moves_data ? transaction.get_data_length() : 0;
   const int port = map_.find(transaction.get_address(), bytes);

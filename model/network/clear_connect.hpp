@@ -12,8 +12,8 @@
 #include "model/config/address_map.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/network/at_router.hpp"
+#include "model/network/booked_traffic.hpp"
 #include "model/network/clear_connect_timing.hpp"
-#include "model/network/host_traffic.hpp"
 #include "model/time/clock_domain.hpp"
 #include "model/time/event_queue.hpp"
 
@@ -38,7 +38,7 @@ class ClearConnect : public sc_core::sc_module {
   InitiatorSocket host_socket{"host_socket"};
   MemorySocket ddr_socket{"ddr_socket"};
 
-  HostTrafficPort host_traffic{"host_traffic"};
+  BookedTrafficPort booked_traffic{"booked_traffic"};
 
   ClearConnect(const sc_core::sc_module_name& name, const ChipConfig& config, const ClockDomain& clock,
                EventQueue* event_queue = nullptr);

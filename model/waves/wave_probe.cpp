@@ -156,6 +156,12 @@ void WaveProbe::sram_accessed(bool write, Cycles start, Cycles finish) {
   change(sram_stream, finish, WaveSignal::on_chip_sram_port, 0);
 }
 
+void WaveProbe::searching(int in_flight, int waiting, Cycles at) {
+  change(search_stream, at, WaveSignal::search_unit_queries, std::uint64_t(in_flight));
+  change(search_stream, at, WaveSignal::search_unit_waiting, std::uint64_t(waiting));
+  wake_for(at);
+}
+
 void WaveProbe::moved_data(bool write, Cycles start, Cycles finish) {
   change(data_stream, start, WaveSignal::ddr_data, write ? 2 : 1);
   change(data_stream, finish, WaveSignal::ddr_data, 0);

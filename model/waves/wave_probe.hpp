@@ -11,6 +11,7 @@
 
 #include "model/config/chip_config.hpp"
 #include "model/observe/chip_observer.hpp"
+#include "model/observe/search_observer.hpp"
 #include "model/time/clock_domain.hpp"
 #include "model/waves/block_windows.hpp"
 #include "model/waves/name_numbers.hpp"
@@ -36,6 +37,7 @@ class WaveProbe : public sc_core::sc_module,
                   public ChipObserver,
                   public DdrObserver,
                   public OnChipSramObserver,
+                  public SearchObserver,
                   public PortObserver {
  public:
   using MemorySampler = std::function<MemoryCounters()>;
@@ -57,6 +59,7 @@ class WaveProbe : public sc_core::sc_module,
   void moved_data(bool write, Cycles start, Cycles finish) override;
   void commanded(int bank, DdrCommand command, std::uint64_t row, Cycles at) override;
   void sram_accessed(bool write, Cycles start, Cycles finish) override;
+  void searching(int in_flight, int waiting, Cycles at) override;
   void passed(Initiator initiator, bool to_ddr, Cycles start, Cycles finish) override;
   void began_transfer(bool upload, std::uint64_t bytes, Cycles start) override;
   void ended_transfer(bool upload, std::uint64_t bytes, Cycles start, Cycles finish) override;
@@ -97,6 +100,7 @@ class WaveProbe : public sc_core::sc_module,
     data_stream,
     counts_stream,
     sram_stream,
+    search_stream,
     host_stream,
     first_bank_stream
   };

@@ -150,6 +150,10 @@ void add_memory(Rows& rows) {
         "row that was activated last"},
        {Signal::on_chip_sram_port, "on_chip_sram", "port", 2, kNumber, kUnits, kChip, kOther,
         "access that has the port of the on-chip SRAM, from its first byte to its last", kFixed, directions},
+       {Signal::search_unit_queries, "search_unit", "queries", 16, kPlot, kUnits, WaveCount::search_unit,
+        kCompute, "queries in flight in all search units of the chip, if it has any"},
+       {Signal::search_unit_waiting, "search_unit", "waiting", 16, kPlot, kDetail, WaveCount::search_unit,
+        kLoad, "of these, queries that wait for lines of mono memory"},
        {Signal::host_link_state, "host_link", "state", 2, kNumber, kUnits, kChip, kOther,
         "what the link to the host does", kFixed, Names{{0, "idle"}, {1, "upload"}, {2, "download"}}}});
 }
@@ -190,6 +194,11 @@ std::string values_text(const WaveSignalInfo& signal) {
   }
 }
 
+/// Whether a chip has at most one, which needs no number.
+bool is_single(WaveCount count) {
+  return count == WaveCount::chip || count == WaveCount::search_unit;
+}
+
 std::string with_number(std::string_view scope, int number, int count) {
   std::string digits = std::to_string(number);
   digits.insert(0, std::to_string(count - 1).size() - digits.size(), '0');
@@ -204,7 +213,7 @@ const char* wave_level_name(WaveLevel level) {
 }
 
 std::string WaveSignalInfo::path() const {
-  return std::string(scope) + (count == WaveCount::chip ? "." : "_*.") + std::string(name);
+  return std::string(scope) + (is_single(count) ? "." : "_*.") + std::string(name);
 }
 
 const std::vector<WaveSignalInfo>& wave_signal_table() {
@@ -220,6 +229,8 @@ int wave_count(const ChipConfig& config, WaveCount count) {
       return config.ddr.banks;
     case WaveCount::pe:
       return config.chip.pes;
+    case WaveCount::search_unit:
+      return config.search_unit.units > 0 ? 1 : 0;
     case WaveCount::chip:
       break;
   }
@@ -235,7 +246,7 @@ std::vector<WaveInstance> wave_instances(const ChipConfig& config) {
     const int count = wave_count(config, first->count);
     for (int i = 0; i < count; ++i) {
       const std::string scope =
-          first->count == WaveCount::chip ? std::string(first->scope) : with_number(first->scope, i, count);
+          is_single(first->count) ? std::string(first->scope) : with_number(first->scope, i, count);
       for (auto info = first; info != last; ++info)
         instances.push_back({&*info, i, scope + "." + std::string(info->name)});
     }

@@ -46,6 +46,8 @@ enum class WaveSignal : std::uint8_t {
   ddr_bank_command,
   ddr_bank_row,
   on_chip_sram_port,
+  search_unit_queries,
+  search_unit_waiting,
   host_link_state,
 };
 inline constexpr int kWaveSignals = static_cast<int>(WaveSignal::host_link_state) + 1;
@@ -63,8 +65,8 @@ enum class WaveLevel : std::uint8_t {
 inline constexpr int kWaveLevels = static_cast<int>(WaveLevel::detail) + 1;
 const char* wave_level_name(WaveLevel level);
 
-/// What has one such signal each.
-enum class WaveCount : std::uint8_t { chip, thread, bank, pe };
+/// What has one such signal each. `search_unit`: the chip, if it has search units.
+enum class WaveCount : std::uint8_t { chip, search_unit, thread, bank, pe };
 
 struct ValueName {
   std::uint64_t value;

@@ -43,6 +43,7 @@ std::string_view group_title(std::string_view scope) {
   if (scope == "pio") return "programmed I/O";
   if (scope == "ddr") return "DDR";
   if (scope == "on_chip_sram") return "on-chip SRAM";
+  if (scope == "search_unit") return "search unit";
   if (scope == "clear_connect") return "ClearConnect";
   if (scope == "host_link") return "host link";
   return scope;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "firmware/cn/chip/search_buffer.hpp"
 #include "firmware/cn/machine.hpp"
 #include "testbench/machine/native_threads.hpp"
 
@@ -15,12 +16,16 @@ namespace testbench {
 class NativeMachine : public cn::Machine {
  public:
   /// @param scratchpad where memory beside the first `mono_bytes` lies, if there is any
-  NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, cn::MonoRange scratchpad = {});
+  /// @param search_unit where the buffer of a search unit lies, if there is one
+  NativeMachine(int num_pes, int poly_bytes_per_pe, std::uint64_t mono_bytes, cn::MonoRange scratchpad = {},
+                cn::MonoRange search_unit = {});
 
   std::uint8_t* mono() { return mono_.data(); }
   std::uint64_t mono_bytes() const { return mono_.size(); }
   std::uint8_t* scratchpad_bytes() { return scratchpad_bytes_.data(); }
   cn::MonoRange scratchpad() const override { return scratchpad_; }
+  cn::MonoRange search_unit() const override { return search_unit_; }
+  void program_search_unit(std::shared_ptr<cn::SearchFunction> function) override;
 
   /// Sets the host's reaction to a signal of `semaphore`: `service` runs at once, on the firmware's thread,
   /// instead of counting the signal.
@@ -52,11 +57,15 @@ class NativeMachine : public cn::Machine {
   /// Throws cn::MachineFault outside memory.
   std::uint8_t* storage(cn::MonoAddress first, std::uint64_t bytes, const char* what);
   bool move_within(const cn::Transfer& transfer, const cn::MonoRange& range, std::uint8_t* bytes);
+  /// The same for the search unit's buffer.
+  bool move_queries(const cn::Transfer& transfer);
 
   bool counts_instructions_ = true;
   std::vector<std::uint8_t> mono_;
   cn::MonoRange scratchpad_;
   std::vector<std::uint8_t> scratchpad_bytes_;
+  cn::MonoRange search_unit_;
+  cn::SearchBuffer search_buffer_;
   std::array<int, kSemaphores> semaphores_{};
   std::array<std::function<void()>, kSemaphores> services_;
   NativeThreads threads_;

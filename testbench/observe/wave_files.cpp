@@ -96,6 +96,9 @@ void WaveFiles::observe_shared_units() {
   if (chip.mono_ddr && shows_ddr) chip.mono_ddr->set_observer(&*probe_, probe_->shows_ddr_commands());
   if (chip.on_chip_sram && probe_->shows(WaveSignal::on_chip_sram_port))
     chip.on_chip_sram->set_observer(&*probe_);
+  if (chip.search_unit &&
+      (probe_->shows(WaveSignal::search_unit_queries) || probe_->shows(WaveSignal::search_unit_waiting)))
+    chip.search_unit->set_observer(&*probe_);
 }
 
 void WaveFiles::finish() {

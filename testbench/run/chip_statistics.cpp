@@ -75,6 +75,25 @@ void merge(model::OnChipSramStatistics& sum, const model::OnChipSramStatistics& 
   sum.busy_cycles += other.busy_cycles;
 }
 
+void merge(model::SearchStatistics& sum, const model::SearchStatistics& other) {
+  sum.queries += other.queries;
+  sum.nodes += other.nodes;
+  sum.leaves += other.leaves;
+  sum.node_tests += other.node_tests;
+  sum.leaf_tests += other.leaf_tests;
+  sum.cache_hits += other.cache_hits;
+  sum.cache_joins += other.cache_joins;
+  sum.cache_misses += other.cache_misses;
+  sum.bytes_fetched += other.bytes_fetched;
+  sum.bytes_written += other.bytes_written;
+  sum.bytes_read += other.bytes_read;
+  sum.busy_cycles += other.busy_cycles;
+  sum.stalled_cycles += other.stalled_cycles;
+  sum.node_cycles += other.node_cycles;
+  sum.leaf_cycles += other.leaf_cycles;
+  sum.answer_wait_cycles += other.answer_wait_cycles;
+}
+
 void merge(model::HostLinkStatistics& sum, const model::HostLinkStatistics& other) {
   sum.bytes_uploaded += other.bytes_uploaded;
   sum.bytes_downloaded += other.bytes_downloaded;
@@ -108,6 +127,8 @@ void ChipStatistics::merge(const ChipStatistics& other) {
   testbench::merge(bus_pio, other.bus_pio);
   testbench::merge(bus_control, other.bus_control);
   testbench::merge(bus_host, other.bus_host);
+  testbench::merge(search_unit, other.search_unit);
+  testbench::merge(bus_search_unit, other.bus_search_unit);
   testbench::merge(host_link, other.host_link);
 }
 
@@ -144,6 +165,8 @@ ChipStatistics collect_statistics(const model::Csx600& chip, model::Cycles total
   statistics.ddr = chip.ddr_statistics();
   statistics.on_chip_sram = chip.on_chip_sram_statistics();
   statistics.bus_host = chip.clear_connect.statistics(model::Initiator::host);
+  statistics.search_unit = chip.search_statistics();
+  statistics.bus_search_unit = chip.search_unit_traffic();
   statistics.host_link = chip.host_link.statistics();
   return statistics;
 }

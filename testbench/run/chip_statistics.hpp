@@ -13,6 +13,7 @@
 #include "model/observe/pio_observer.hpp"
 #include "model/pe_array/kernel_statistics.hpp"
 #include "model/pe_array/poly_sram_statistics.hpp"
+#include "model/search_unit/search_statistics.hpp"
 
 namespace model {
 class Csx600;
@@ -36,6 +37,8 @@ struct ChipStatistics {
   model::ClearConnectStatistics bus_pio;
   model::ClearConnectStatistics bus_control;
   model::ClearConnectStatistics bus_host;
+  model::SearchStatistics search_unit;
+  model::ClearConnectStatistics bus_search_unit;
   model::HostLinkStatistics host_link;
 
   /// Adds the counts of another chip, or of another array of this one, that ran beside it. `config` and both

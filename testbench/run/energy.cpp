@@ -35,11 +35,14 @@ class Causes {
          scale_ * table_.pio_picojoules_per_byte * double(run_.pio.bytes_to_poly + run_.pio.bytes_to_mono));
     chip("clear_connect",
          network(run_.config.clear_connect.hops_to_ddr, double(network_bytes()) - sram_bytes()) +
-             network(run_.config.on_chip_sram.hops, sram_bytes()));
+             network(run_.config.on_chip_sram.hops, sram_bytes()) +
+             network(run_.config.search_unit.hops - run_.config.clear_connect.hops_to_ddr, search_bytes()));
     if (run_.on_chip_sram.accesses > 0)
       chip("on_chip_sram", scale_ * table_.on_chip_sram_picojoules_per_byte * sram_bytes());
-    chip("leakage",
-         (table_.leakage_watts * run_.config.board.chips + table_.leakage_watts_per_pe * pes()) * seconds_);
+    if (search_units() > 0) chip("search_unit", search_joules());
+    chip("leakage", (table_.leakage_watts * run_.config.board.chips + table_.leakage_watts_per_pe * pes() +
+                     table_.search_leakage_watts * search_units()) *
+                        seconds_);
     add_ddr();
     return std::move(causes_);
   }
@@ -57,9 +60,23 @@ class Causes {
   }
 
   std::uint64_t network_bytes() const {
-    return run_.bus_pio.bytes + run_.bus_control.bytes + run_.bus_host.bytes;
+    return run_.bus_pio.bytes + run_.bus_control.bytes + run_.bus_host.bytes + run_.bus_search_unit.bytes;
   }
   double sram_bytes() const { return double(run_.on_chip_sram.bytes_read + run_.on_chip_sram.bytes_written); }
+  /// Through the port of the search units' buffer.
+  double search_bytes() const { return double(run_.search_unit.bytes_read + run_.search_unit.bytes_written); }
+  int search_units() const { return run_.config.search_unit.units * run_.config.board.chips; }
+  double search_joules() const {
+    const model::SearchStatistics& search = run_.search_unit;
+    const double unit_cycles =
+        double(run_.total_cycles) * search_units() / run_.config.search_unit.clock_divider;
+    const double lines = double(search.cache_hits + search.cache_joins) + 2 * double(search.cache_misses);
+    return scale_ *
+           (table_.search_box_picojoules * double(search.node_tests) +
+            table_.search_leaf_picojoules * double(search.leaf_tests) +
+            table_.search_line_picojoules * lines + table_.search_picojoules_per_byte * search_bytes() +
+            table_.search_clock_picojoules * unit_cycles);
+  }
   /// Energy of `bytes` that went from node to node `hops` times.
   double network(int hops, double bytes) const {
     return scale_ * table_.clear_connect_picojoules * hops * bytes;

@@ -39,7 +39,8 @@ std::unique_ptr<NativeMachine> native_machine(const model::ChipConfig& chip, std
                                               TimingStream* record) {
   const cn::MonoRange scratchpad = model::on_chip_sram_range(chip);
   if (record == nullptr)
-    return std::make_unique<NativeMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, scratchpad);
+    return std::make_unique<NativeMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, scratchpad,
+                                           model::search_unit_range(chip));
   return std::make_unique<RecordingMachine>(chip.chip.pes, chip.poly.sram_bytes, mono_bytes, *record,
                                             scratchpad);
 }

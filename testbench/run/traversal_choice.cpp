@@ -7,6 +7,8 @@
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
 #include "firmware/path_tracer/path_tracer.hpp"
+#include "firmware/path_tracer/traversals/ray_unit_search.hpp"
+#include "model/config/address_map.hpp"
 #include "testbench/machine/native_machine.hpp"
 #include "testbench/system/error.hpp"
 
@@ -79,7 +81,7 @@ int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip, bool
   least.scratchpad = path_tracer::Scratchpad::none;  // takes nothing of a PE's SRAM
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1, has_layers}, chip.chip.pes, least);
   constexpr int kPlenty = 1 << 18;
-  NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes);
+  NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes, {}, model::search_unit_range(chip));
   const path_tracer::PathTracer sizes(machine, path_tracer::kernels(cn::widest_level()), least, layout, {});
   return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
 } catch (const cn::PolyMemoryOverflow&) {
@@ -161,6 +163,13 @@ std::string rounded(double cycles) {
   return text;
 }
 
+/// Bins of the default length become shorter where the unit's buffer holds fewer rays.
+void fit_bins_to_unit(const model::ChipConfig& chip, ProgramConfig& program) {
+  const int most = path_tracer::RayUnitSearch::most_bin_blocks(
+      model::search_unit_range(chip), path_tracer::RecordSizes(program.features), chip.chip.pes);
+  program.bin_blocks = std::clamp(most, std::max(1, program.n), std::max(program.n, program.bin_blocks));
+}
+
 TreeOverrides overrides_of(const ProgramConfig& program, const GivenOptions& given) {
   const path_tracer::TreeShape& tree = program.tree;
   TreeOverrides overrides;
@@ -231,6 +240,10 @@ int resident_nodes_that_fit(const TriangleCount& count, const ProgramConfig& pro
 
 void complete_traversal(const TriangleCount& count, const model::ChipConfig& chip, ProgramConfig& program) {
   if (!program.uses_tree() || program.tree.resident_nodes != kAsManyAsFit) return;
+  if (program.hands_rays_to_unit()) {
+    program.tree.resident_nodes = 1;  // no PE has any
+    return;
+  }
   program.tree.resident_nodes = resident_nodes_that_fit(count, program, chip);
 }
 
@@ -252,6 +265,7 @@ std::string choose_tree(const TriangleCount& count, const model::ChipConfig& chi
     reason = choice.reason;
   }
   if (given.count("packet_blocks") == 0) choose_packet_blocks(count, chip, program);
+  if (program.hands_rays_to_unit() && given.count("bin_blocks") == 0) fit_bins_to_unit(chip, program);
   const path_tracer::TreeShape whole = program.tree;
   const auto fit_tree = [&] {
     if (!program.uses_tree()) return;

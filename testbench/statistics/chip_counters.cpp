@@ -1,3 +1,4 @@
+#include "testbench/run/area.hpp"
 #include "testbench/run/energy.hpp"
 #include "testbench/statistics/counters.hpp"
 #include "testbench/statistics/roofline.hpp"
@@ -21,6 +22,51 @@ Json joules_by_cause(const Chip& chip) {
   Json joules = Json::object();
   for (const Energy::Cause& cause : energy_of(chip).causes) joules[cause.name] = cause.joules;
   return joules;
+}
+
+Json square_millimetres_by_part(const Chip& chip) {
+  Json area = Json::object();
+  for (const Area::Part& part : area_of(chip.config).parts) area[part.name] = part.mm2;
+  return area;
+}
+
+/// A chip without a search unit has none of its counters.
+Json search_counts(const Chip& chip) {
+  Json counts = Json::object();
+  if (chip.config.search_unit.units == 0) return counts;
+  const model::SearchStatistics& of = chip.search_unit;
+  counts["queries"] = of.queries;
+  counts["nodes"] = of.nodes;
+  counts["leaves"] = of.leaves;
+  counts["node_tests"] = of.node_tests;
+  counts["leaf_tests"] = of.leaf_tests;
+  counts["cache_hits"] = of.cache_hits;
+  counts["cache_joins"] = of.cache_joins;
+  counts["cache_misses"] = of.cache_misses;
+  return counts;
+}
+
+Json search_cycles(const Chip& chip) {
+  Json cycles = Json::object();
+  if (chip.config.search_unit.units == 0) return cycles;
+  const model::SearchStatistics& of = chip.search_unit;
+  cycles["busy"] = of.busy_cycles;
+  cycles["stalled"] = of.stalled_cycles;
+  cycles["node_tests"] = of.node_cycles;
+  cycles["leaf_tests"] = of.leaf_cycles;
+  cycles["answer_wait"] = of.answer_wait_cycles;
+  cycles["network_wait"] = chip.bus_search_unit.waiting_cycles;
+  return cycles;
+}
+
+Json search_bytes(const Chip& chip) {
+  Json bytes = Json::object();
+  if (chip.config.search_unit.units == 0) return bytes;
+  const model::SearchStatistics& of = chip.search_unit;
+  bytes["fetched"] = of.bytes_fetched;
+  bytes["written"] = of.bytes_written;
+  bytes["read"] = of.bytes_read;
+  return bytes;
 }
 
 Json watts(const Chip& chip, double joules) {
@@ -164,6 +210,17 @@ Counters<Chip> unit_counters() {
        [](const Chip& c) { return Json(c.on_chip_sram.bytes_written); }},
       {{"on_chip_sram.busy_cycles", "cycles", "cycles in which its port transferred"},
        [](const Chip& c) { return Json(c.on_chip_sram.busy_cycles); }},
+      {{"search_unit.counts.*", "count",
+        "of a chip with search units: queries (rays), steps through nodes and leaves, tests of their boxes "
+        "and triangles; lines found in the caches, on the way for another query, or fetched"},
+       search_counts},
+      {{"search_unit.cycles.*", "cycles",
+        "summed over search units: with queries in flight (busy), all of which waited for memory (stalled), "
+        "in which tests began; time that reads of answers waited, and lines for the network"},
+       search_cycles},
+      {{"search_unit.bytes.*", "bytes",
+        "fetched from mono memory by search units; written to and read from their buffer"},
+       search_bytes},
       {{"host_link.bytes_uploaded", "bytes", "from the host to mono memory"},
        [](const Chip& c) { return Json(c.host_link.bytes_uploaded); }},
       {{"host_link.bytes_downloaded", "bytes", "from mono memory to the host"},
@@ -194,6 +251,13 @@ Counters<Chip> energy_counters() {
         "energy of an instruction class in enabled PEs or of a part of the chip; the sum is energy.joules",
         kDerived},
        joules_by_cause}};
+}
+
+Counters<Chip> area_counters() {
+  return {{{"area.mm2_by_part.*", "mm2", "area of the parts of a chip, to first order", kDerived},
+           square_millimetres_by_part},
+          {{"area.mm2", "mm2", "area of all chips", kDerived},
+           [](const Chip& c) { return Json(area_of(c.config).mm2() * c.config.board.chips); }}};
 }
 
 Counters<Chip> roofline_counters() {
@@ -262,7 +326,8 @@ Counters<Chip> verdict_counters() {
 const Counters<Chip>& chip_counters() {
   static const Counters<Chip> counters = [] {
     Counters<Chip> all = unit_counters();
-    for (const Counters<Chip>& more : {energy_counters(), roofline_counters(), verdict_counters()})
+    for (const Counters<Chip>& more :
+         {energy_counters(), area_counters(), roofline_counters(), verdict_counters()})
       all.insert(all.end(), more.begin(), more.end());
     return all;
   }();

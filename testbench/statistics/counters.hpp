@@ -15,8 +15,8 @@ struct ChipStatistics;
 struct RenderResult;
 
 /// What counters count in. "-" is a ratio, "count" a number of what the name says.
-inline constexpr std::array<std::string_view, 11> kCounterUnits = {
-    "-", "count", "cycles", "s", "Hz", "bytes", "bytes/s", "flop/s", "flop/byte", "J", "W"};
+inline constexpr std::array<std::string_view, 12> kCounterUnits = {
+    "-", "count", "cycles", "s", "Hz", "bytes", "bytes/s", "flop/s", "flop/byte", "J", "W", "mm2"};
 
 enum class CounterKind : std::uint8_t {
   counted,  ///< by the chip, the firmware or the simulator

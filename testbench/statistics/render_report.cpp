@@ -134,11 +134,20 @@ void add_lobes_row(const path_tracer::RunCounts& counts, Rows& rows) {
   if (!row.empty()) rows.emplace_back("SIMD efficiency of lobes", row);
 }
 
-void add_traversal_row(const RenderRequest& request, const path_tracer::RunCounts& counts, Rows& rows) {
+void add_traversal_row(const RenderRequest& request, const RenderResult& result, Rows& rows) {
+  const path_tracer::RunCounts& counts = result.counts;
   const path_tracer::ProgramConfig& program = request.options.program;
   std::string row = name_of(program.traversal);
-  if (program.uses_tree()) {
-    const double rays = double(counts.segments + counts.shadow_rays);
+  const double rays = double(counts.segments + counts.shadow_rays);
+  if (program.hands_rays_to_unit() && result.chip) {
+    const model::SearchStatistics& unit = result.chip->search_unit;
+    row += text(": %.2f nodes", double(unit.nodes) / rays) +
+           text(", %.2f triangles tested a ray", double(unit.leaf_tests) / rays) +
+           text(", the unit busy %.0f %% of the time",
+                100 * double(unit.busy_cycles) /
+                    (double(result.chip->firmware_cycles) * result.chip->config.search_unit.units *
+                     result.chip->config.board.chips));
+  } else if (program.walks_tree()) {
     row += text(": %.2f leaves", double(counts.traversal.leaf_loads) / rays) +
            text(", %.2f treelets loaded a ray", double(counts.traversal.treelet_loads) / rays);
   }
@@ -183,7 +192,7 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
   rows.emplace_back("path segments", text("%.0f", double(counts.segments)) +
                                          text(" of %.0f paths", double(counts.paths)) +
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));
-  add_traversal_row(request, counts, rows);
+  add_traversal_row(request, result, rows);
   add_skips_row(result, rows);
   add_lobes_row(counts, rows);
   if (result.chip) add_chip_rows(result, rows);

@@ -180,7 +180,7 @@ const model::ChipConfig& chip_of(const SweepPoint& point) {
 
 bool can_be_replayed(const SweepPoint& point) {
   const model::ChipConfig& chip = chip_of(point);
-  return chip.board.chips * chip.chip.arrays == 1;
+  return chip.board.chips * chip.chip.arrays == 1 && chip.search_unit.units == 0;
 }
 
 std::string describe_point(const Sweep& sweep, const SweepPoint& point) {

@@ -133,8 +133,8 @@ std::size_t keys_of(const std::string& group) {
 // With ChangingAKeyChangesThatLineOnly below: as many keys as fields, each with a field of its own.
 TEST(ParameterTable, CoversEveryField) {
   const ChipConfig config = default_chip_config();
-  const auto& [preset, chip, poly, control, pio, clear_connect, ddr, on_chip_sram, board, host, energy] =
-      config;  // a new group breaks this line
+  const auto& [preset, chip, poly, control, pio, clear_connect, ddr, on_chip_sram, search_unit, board, host,
+               energy, area] = config;  // a new group breaks this line
   EXPECT_EQ(preset, "csx600");
   EXPECT_EQ(keys_of("chip"), field_count<std::decay_t<decltype(chip)>>());
   EXPECT_EQ(keys_of("poly"), field_count<std::decay_t<decltype(poly)>>() - 1 + cn::kInstructionClasses);
@@ -144,6 +144,8 @@ TEST(ParameterTable, CoversEveryField) {
   EXPECT_EQ(keys_of("clear_connect"), field_count<std::decay_t<decltype(clear_connect)>>());
   EXPECT_EQ(keys_of("ddr"), field_count<std::decay_t<decltype(ddr)>>());
   EXPECT_EQ(keys_of("on_chip_sram"), field_count<std::decay_t<decltype(on_chip_sram)>>());
+  EXPECT_EQ(keys_of("search_unit"), field_count<std::decay_t<decltype(search_unit)>>());
+  EXPECT_EQ(keys_of("area"), field_count<std::decay_t<decltype(area)>>());
   EXPECT_EQ(keys_of("board"), field_count<std::decay_t<decltype(board)>>());
   EXPECT_EQ(keys_of("host"), field_count<std::decay_t<decltype(host)>>());
   EXPECT_EQ(keys_of("energy.picojoules"), cn::kInstructionClasses - 1) << "mono has no energy of its own";

@@ -30,6 +30,8 @@ TEST(EffectiveToml, RoundTripsAChipInWhichEveryParameterWasChanged) {
   config.control.cache_line_bytes = 8;
   config.clear_connect = {1, 8, 3, 5, 24};
   config.on_chip_sram = {2048, std::uint64_t{1} << 50, 7, 3, 9};
+  config.chip.arrays = 1;
+  config.search_unit = {3, 5, 7, 11, 13, 2, 4, 192, 8, 3, 6, 4096, std::uint64_t{1} << 51, 24, 5};
   config.ddr.page_hit_cycles = 0;
   config.ddr.banks = 1;
   config.ddr.page_bytes = 64;

@@ -84,11 +84,13 @@ TEST(CounterDeclarations, DescriptionNamesEachWithItsUnitAndMeaning) {
   }
 }
 
-/// Statistics of a run through a tree, with lobes; other runs have no rays by pass and plain ones no lobes.
+/// Statistics of a run through a tree, with lobes, on a chip with a search unit; other runs have no rays by
+/// pass, plain ones no lobes, and other chips no queries.
 TEST_F(CountersOfRuns, EachDeclarationIsInJsonCsvAndText) {
   RenderOptions options = test_support::render_options(Program::full, 24);
   options.program.traversal = path_tracer::Traversal::refill;
   options.program.built_for = 1;
+  options.chip.search_unit.units = 1;
   ASSERT_STREQ(path_tracer::kBuiltForTable[1].name, "glossy");
   const ordered_json json = statistics(options);
   const auto flat = testbench::flatten(json);

@@ -1,4 +1,5 @@
 #include "testbench/run/energy.hpp"
+
 #include "model/csx600.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,8 @@
 
 #include "firmware/examples/firmwares.hpp"
 #include "model/config/chip_file.hpp"
+#include "model/config/chip_parameters.hpp"
+#include "testbench/run/area.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/statistics/roofline.hpp"
 #include "testbench/validation/example_runs.hpp"
@@ -132,9 +135,58 @@ TEST(Energy, IsCountsTimesTheTable) {
   EXPECT_DOUBLE_EQ(joules_of(energy, "ddr_background"), table.ddr_background_watts * seconds);
 }
 
+TEST(Energy, OfASearchUnitIsItsCountsTimesTheTable) {
+  ChipStatistics run = made_up_run();
+  run.config.energy.chip_scale = 4;
+  const double without = joules_of(testbench::energy_of(run), "leakage");
+  const double network = joules_of(testbench::energy_of(run), "clear_connect");
+  run.config.search_unit.units = 3;
+  run.config.search_unit.clock_divider = 2;
+  run.config.search_unit.hops = run.config.clear_connect.hops_to_ddr + 1;
+  run.search_unit.node_tests = 400;
+  run.search_unit.leaf_tests = 30;
+  run.search_unit.cache_hits = 50;
+  run.search_unit.cache_joins = 7;
+  run.search_unit.cache_misses = 20;
+  run.search_unit.bytes_written = 800;
+  run.search_unit.bytes_read = 400;
+  run.bus_search_unit.bytes = 1280;
+  const model::ChipConfig::Energy& table = run.config.energy;
+  const Energy energy = testbench::energy_of(run);
+  EXPECT_DOUBLE_EQ(
+      joules_of(energy, "search_unit"),
+      4e-12 * (table.search_box_picojoules * 400 + table.search_leaf_picojoules * 30 +
+               table.search_line_picojoules * (50 + 7 + 2 * 20) + table.search_picojoules_per_byte * 1200 +
+               table.search_clock_picojoules * 3 * 1e6 / 2));
+  EXPECT_DOUBLE_EQ(joules_of(energy, "leakage") - without, 3 * table.search_leakage_watts * energy.seconds);
+  const int hops = run.config.clear_connect.hops_to_ddr;
+  EXPECT_NEAR(joules_of(energy, "clear_connect") - network,
+              4e-12 * table.clear_connect_picojoules * (hops * 1280 + 1200), 1e-15)
+      << "lines from the DDR, and one hop more for rays and hits";
+}
+
+TEST(Area, IsPartsTimesTheTable) {
+  model::ChipConfig config = model::default_chip_config();
+  config.area = {0.5, 20, 0.25, 4, 0.125, 0.0625};
+  EXPECT_DOUBLE_EQ(testbench::area_of(config).mm2(), 96 * 0.5 + 20);
+  config.search_unit.units = 2;
+  config.search_unit.width = 3;
+  config.search_unit.leaf_interval_cycles = 8;
+  config.search_unit.queries_in_flight = 10;
+  config.search_unit.cache_bytes = 4096;
+  config.search_unit.buffer_bytes = 65536;
+  EXPECT_DOUBLE_EQ(testbench::area_of(config).mm2(),
+                   96 * 0.5 + 20 + 2 * (3 * 0.25 + 4.0 / 8 + 10 * 0.125 + 4 * 0.0625) + 64 * 0.0625);
+}
+
 TEST(Energy, EveryEntryOfTheTableCounts) {
   ChipStatistics run = made_up_run();
   run.on_chip_sram = {10, 5000, 3000, 500};
+  run.config.search_unit.units = 2;
+  run.search_unit.node_tests = 400;
+  run.search_unit.leaf_tests = 30;
+  run.search_unit.cache_misses = 20;
+  run.search_unit.bytes_written = 800;
   const double joules = testbench::energy_of(run).joules();
   int entries = 0;
   for (const model::ParameterInfo& parameter : model::parameter_table()) {
@@ -144,7 +196,7 @@ TEST(Energy, EveryEntryOfTheTableCounts) {
     parameter.write(other.config, 2 * std::get<double>(parameter.read(run.config)));
     EXPECT_GT(testbench::energy_of(other).joules(), joules) << parameter.key;
   }
-  EXPECT_EQ(entries, 13 + int(cn::kInstructionClasses) - 1);  // all instruction classes except mono
+  EXPECT_EQ(entries, 19 + int(cn::kInstructionClasses) - 1);  // all instruction classes except mono
 }
 
 TEST_F(EnergyOfRuns, CausesAddUpToTheTotal) {

@@ -65,9 +65,9 @@ void take_bins(Layout& layout, MonoAllocator& memory, const SceneCounts& scene, 
                const ProgramConfig& config) {
   const std::uint64_t slots = slots_of(num_pes, config);
   const TreeShape& tree = config.tree;
-  if (config.uses_tree()) {
+  if (config.walks_tree()) {
     layout.ray_queue = memory.take<QueuedRay>("ray queue", slots);
-  } else {
+  } else if (!config.uses_tree()) {
     layout.ray_bin = memory.take<RayRecord>("ray bin", slots);
   }
   if (config.traversal == Traversal::temporary_bin)
@@ -78,8 +78,10 @@ void take_bins(Layout& layout, MonoAllocator& memory, const SceneCounts& scene, 
     layout.treelet_pool_blocks = treelet_pool_blocks(scene, num_pes, config);
     take_treelet_pool(layout, memory, num_pes, config);
   }
-  layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
-  if (config.uses_tree()) layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
+  if (!config.hands_rays_to_unit())
+    layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
+  if (config.walks_tree())
+    layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
   layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
   layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots, layout.sizes.lighting);
   layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);

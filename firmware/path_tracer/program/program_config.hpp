@@ -58,6 +58,8 @@ enum class Traversal : std::uint8_t {
   // Through a tree that the control unit traverses for several blocks of rays at once:
   large_packets,  ///< culled by the interval of all rays, then tested from the first active block on
   ray_streams,    ///< of which each PE filters the rays that are active in a node
+  /// Through a tree that the chip's search unit walks; PEs hand it their rays and load their hits.
+  ray_unit,
 };
 
 /// How a stage's data go from one kernel to the next.
@@ -130,6 +132,9 @@ struct ProgramConfig {
     return traversal == Traversal::packets || traversal == Traversal::large_packets ||
            traversal == Traversal::ray_streams;
   }
+  bool hands_rays_to_unit() const { return traversal == Traversal::ray_unit; }
+  /// Whether PEs take rays through the tree, or the control unit does for them.
+  bool walks_tree() const { return uses_tree() && !hands_rays_to_unit(); }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }
   /// Whether paths stay in the PEs' SRAM, instead of going round bins in mono memory.

@@ -28,7 +28,7 @@ TreeSearch::TreeSearch(const StageContext& context)
     : queue_(context.machine, context.kernels, context.layout),
       tree_(context.machine, context.config, context.layout, queue_),
       traversal_(make_traversal(context, tree_)),
-      recall_(context, tree_) {}
+      recall_(context, [this](int /*block*/) { return tree_.last_hit_step; }) {}
 
 TreeTraversal::Plan TreeSearch::plan_in(StepPipeline& steps) {
   return [&](Stage& stage, int block) {

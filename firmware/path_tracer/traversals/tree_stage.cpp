@@ -174,7 +174,7 @@ void TreeStage::count_lanes(std::size_t pass, const LaneMask& rays) {
 }
 
 void RecallStage::load(std::uint64_t step, int block) {
-  context_.saves.wait_until(tree_.last_hit_step);
+  context_.saves.wait_until(last_writer_(block));
   const Bins::Block& bin = bin_block(block);
   context_.loads.copy_m2p(step, block, {bin.surface_place.offset_bytes, sizeof(MonoAddress)},
                           block_of(context_.layout.surface_place_bin, block), bin.live);

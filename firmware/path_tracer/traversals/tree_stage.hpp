@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "firmware/path_tracer/stages/ray_queue.hpp"
 #include "firmware/path_tracer/stages/stage.hpp"
 
@@ -94,7 +96,9 @@ class TreeStage : public Stage {
 /// Recall stage, between the tree and the intersection stage: brings each slot whether its ray hit something.
 class RecallStage : public Stage {
  public:
-  RecallStage(const StageContext& context, const TreeContext& tree) : Stage(context), tree_(tree) {}
+  /// @param last_writer the latest step whose save the hits of a block's rays need
+  RecallStage(const StageContext& context, std::function<std::uint64_t(int block)> last_writer)
+      : Stage(context), last_writer_(std::move(last_writer)) {}
 
   const char* name() const override { return "intersection stage"; }  // whose first half it is
   void load(std::uint64_t step, int block) override;
@@ -102,7 +106,7 @@ class RecallStage : public Stage {
   void save(std::uint64_t, int) override {}
 
  private:
-  const TreeContext& tree_;
+  std::function<std::uint64_t(int block)> last_writer_;
 };
 
 }  // namespace path_tracer

@@ -6,11 +6,12 @@
 
 // Linked into programs that are built with AddressSanitizer.
 //
-// Debian's SystemC tells AddressSanitizer when it switches coroutines, but not when a process ends and the main
-// thread goes on: from then on the sanitizer takes the ended process's stack for the current one. Where an
-// exception then passes through the main thread, it does not clear the marks of the frames that were left, and the
-// next call reports a use after scope of what nobody has used (https://github.com/google/sanitizers/issues/189). So
-// it is told the main thread's stack once more before each exception that is thrown there.
+// Debian's SystemC tells AddressSanitizer when it switches coroutines, but not when a process ends and the
+// main thread goes on: from then on the sanitizer takes the ended process's stack for the current one. Where
+// an exception then passes through the main thread, it does not clear the marks of the frames that were left,
+// and the next call reports a use after scope of what nobody has used
+// (https://github.com/google/sanitizers/issues/189). So it is told the main thread's stack once more before
+// each exception that is thrown there.
 
 extern "C" void __sanitizer_start_switch_fiber(void** fake_stack, const void* bottom, std::size_t bytes);
 extern "C" void __sanitizer_finish_switch_fiber(void* fake_stack, const void** bottom, std::size_t* bytes);

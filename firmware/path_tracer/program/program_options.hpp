@@ -24,7 +24,7 @@ inline constexpr std::array kShadingNames = {"every_lobe", "present_lobes", "mat
 inline constexpr std::array kScratchpadNames = {"none", "nodes", "triangles", "fitting"};
 inline constexpr std::array kTraversalNames = {"brute_force",   "temporary_bin", "refill",
                                                "lock_step",     "packets",       "shared_treelets",
-                                               "large_packets", "ray_streams", "ray_unit"};
+                                               "large_packets", "ray_streams",   "ray_unit"};
 inline constexpr std::array kNodeFormatNames = {"fp64", "fp32", "quantised8"};
 
 inline const char* name_of(Program program) {

@@ -35,18 +35,29 @@ int pio_engines(const ChipStatistics& statistics) {
   return statistics.arrays() * (has_two ? 2 : 1);
 }
 
+/// Without what the engines wait for answers of search units, which is these units' time.
+double pio_cycles(const ChipStatistics& statistics) {
+  return std::max(0.0,
+                  double(statistics.pio.busy_cycles()) - double(statistics.search_unit.answer_wait_cycles));
+}
+
 std::vector<UnitUse> uses_of(const ChipStatistics& statistics) {
   const double array_time = double(statistics.firmware_cycles) * statistics.arrays();
   const double chip_time = double(statistics.firmware_cycles) * statistics.config.board.chips;
   const model::ControlStatistics& control = statistics.control;
-  return {{"pe_array", ratio(double(control[CycleCause::poly] + control[CycleCause::stolen]), array_time)},
-          {"pio", ratio(double(statistics.pio.busy_cycles()),
-                        double(statistics.firmware_cycles) * pio_engines(statistics))},
-          {"clear_connect", roofline_of(statistics).roof("clear_connect").share()},
-          {"ddr", ratio(double(statistics.ddr.busy_cycles), chip_time)},
-          {"on_chip_sram", ratio(double(statistics.on_chip_sram.busy_cycles), chip_time)},
-          {"control_unit", ratio(control_unit_cycles(control), array_time)},
-          {"host_link", ratio(double(statistics.host_link.busy_cycles), double(statistics.total_cycles))}};
+  std::vector<UnitUse> uses = {
+      {"pe_array", ratio(double(control[CycleCause::poly] + control[CycleCause::stolen]), array_time)},
+      {"pio", ratio(pio_cycles(statistics), double(statistics.firmware_cycles) * pio_engines(statistics))},
+      {"clear_connect", roofline_of(statistics).roof("clear_connect").share()},
+      {"ddr", ratio(double(statistics.ddr.busy_cycles), chip_time)},
+      {"on_chip_sram", ratio(double(statistics.on_chip_sram.busy_cycles), chip_time)},
+      {"control_unit", ratio(control_unit_cycles(control), array_time)},
+      {"host_link", ratio(double(statistics.host_link.busy_cycles), double(statistics.total_cycles))}};
+  const int search_units = statistics.config.search_unit.units;
+  if (search_units > 0)
+    uses.push_back(
+        {"search_unit", ratio(double(statistics.search_unit.busy_cycles), chip_time * search_units)});
+  return uses;
 }
 
 /// "66.3 % turns of PEs, 20.1 % memory, 6.4 % setup", of the time.

@@ -18,7 +18,8 @@ struct UnitUse {
 struct Verdict {
   /// pe_array (kernels and the cycles stolen from them), pio (setup, turns of PEs, misalignment and waits for
   /// memory, not its bytes alone), clear_connect (bytes of a node's link), ddr (data bus), on_chip_sram
-  /// (port), control_unit (everything but kernels and waits), host_link; means of all arrays and chips.
+  /// (port), control_unit (everything but kernels and waits), host_link, and search_unit (queries in flight)
+  /// if the chip has any; means of all arrays and chips.
   std::vector<UnitUse> units;
   std::string_view critical;  ///< the unit that was busy longest
   std::string reason;         ///< one line: how it spent its time, and who waited for it

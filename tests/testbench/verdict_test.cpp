@@ -66,6 +66,20 @@ TEST(VerdictOfARun, TwoEnginesAreEachBusyHalfAsLong) {
   EXPECT_DOUBLE_EQ(verdict_of(run).share_of("pio"), 0.475);
 }
 
+/// What the I/O engine waits for answers of a search unit is that unit's time.
+TEST(VerdictOfARun, ASearchUnitThatIsWaitedForIsTheVerdict) {
+  ChipStatistics run = waiting_run();
+  for (const UnitUse& unit : verdict_of(run).units) EXPECT_NE(unit.name, "search_unit");
+  run.config.search_unit.units = 2;
+  run.search_unit.busy_cycles = 1800;
+  run.search_unit.answer_wait_cycles = 200;
+  const Verdict verdict = verdict_of(run);
+  EXPECT_DOUBLE_EQ(verdict.share_of("search_unit"), 0.9);
+  EXPECT_DOUBLE_EQ(verdict.share_of("pio"), 0.75);
+  EXPECT_EQ(verdict.critical, "search_unit");
+  EXPECT_EQ(verdict.reason, "search_unit is busy 90.0 % of the time");
+}
+
 TEST(VerdictOfARun, OfABoardSharesAreMeans) {
   ChipStatistics run = waiting_run();
   run.config.board.chips = 2;

@@ -98,7 +98,7 @@ class SearchTiming {
   void take_queries(Cycles now);
   void go_on(int place, Cycles now);
   void look_up(int place, const cn::SearchStep& step, Cycles now);
-  void take_line(int unit, std::uint64_t line, Cycles now);
+  void take_line(int number, std::uint64_t line, Cycles now);
   void test(int place, Cycles now);
   void finish(int place, Cycles now);
   void account(Unit& unit, Cycles now);

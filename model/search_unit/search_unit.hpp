@@ -16,6 +16,7 @@
 #include "model/time/event_queue.hpp"
 #include "model/transaction/at_initiator.hpp"
 #include "model/transaction/at_target.hpp"
+#include "model/transaction/divisor.hpp"
 #include "model/transaction/payload_pool.hpp"
 
 namespace model {

@@ -114,7 +114,7 @@ std::string reason_of(const ChipStatistics& statistics, const Verdict& verdict) 
     return "no unit is busy for more than " + percent(share) + " of the time (" + critical +
            "): they wait for one another" +
            (statistics.exposed_pio_share() > 0 ? waits_for_pio(statistics) : "");
-  const std::string busy = critical + " is busy " + percent(share) + " of the time";
+  std::string busy = critical + " is busy " + percent(share) + " of the time";
   if (critical == "pio") return busy + " (" + parts_of_pio(statistics) + ")" + waits_for_pio(statistics);
   if (critical == "pe_array")
     return busy + " (" + longest_kernels(statistics) + "), " + percent(statistics.simd_efficiency()) +

@@ -2,56 +2,21 @@
 
 #include <algorithm>
 
-#include "firmware/path_tracer/traversals/tree_search.hpp"
-
 namespace path_tracer {
 namespace {
 
-/// Where unoptimised Cn keeps its locals; the stack lies at the low end of poly SRAM (SDK Reference
-/// Manual 3.1, p. 163).
-constexpr int kStackBytes = 1024;
-
-int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
-  return std::max({RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
-                   config.uses_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
+int load_buffer_bytes(const ProgramConfig& config) {
+  return std::max(IntersectionStage::load_bytes(config), PathStage::load_bytes(config));
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
-  return std::max({RayStage::save_bytes(config), IntersectionStage::save_bytes(config),
-                   PathStage::save_bytes(config),
-                   config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
-                   config.uses_tree() ? TreeStage::save_bytes(config) : 0});
-}
-
-ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
-  validate(config);
-  config.features = layout.features;
-  return config;
-}
-
-cn::Machine& with_semaphores_and_stack(cn::Machine& machine) {
-  HostSemaphores::allocate(machine);
-  machine.poly_memory().allocate("stack", kStackBytes);
-  return machine;
-}
-
-std::unique_ptr<RaySearch> make_search(const StageContext& context) {
-  if (context.config.traversal == Traversal::brute_force) return std::make_unique<BruteForceSearch>(context);
-  return std::make_unique<TreeSearch>(context);
+  return std::max({IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
+                   config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0});
 }
 
 }  // namespace
 
-PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config,
-                                         const Layers& layers) {
-  return {
-      {machine,
-       "load buffer",
-       {config.load_buffers(), load_buffer_bytes(config, layers), !config.buffers_loads()}},
-      {machine, "save buffer", {config.save_buffers(), save_buffer_bytes(config), !config.buffers_saves()}}};
-}
-
-PathTracer::Rings PathTracer::make_radiance_rings(cn::Machine& machine, const ProgramConfig& config) {
+Rings PathTracer::make_radiance_rings(cn::Machine& machine, const ProgramConfig& config) {
   return {{machine,
            "radiance load buffer",
            {PassRadiance::load_buffers(config), RadianceStage::kLoadBytes, !config.buffers_loads()}},
@@ -65,7 +30,8 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       config_(built_for(layout, config)),
       layout_(layout),
       bins_(make_bins(machine.poly_memory(), config_.bin_blocks)),
-      rings_(make_rings(machine, config_, layout.layers)),
+      rings_(make_rings(machine, config_, layout.layers, load_buffer_bytes(config_),
+                        save_buffer_bytes(config_))),
       radiance_rings_(make_radiance_rings(machine, config_)),
       scratchpad_(machine, rings_.loads, config_.scratchpad, layout_),
       search_(make_search(context(rings_))),

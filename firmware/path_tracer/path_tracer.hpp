@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include "firmware/path_tracer/pipeline/hit_binning.hpp"
@@ -11,6 +10,7 @@
 #include "firmware/path_tracer/pipeline/step_pipeline.hpp"
 #include "firmware/path_tracer/stages/intersection_stage.hpp"
 #include "firmware/path_tracer/stages/path_stage.hpp"
+#include "firmware/path_tracer/tracer.hpp"
 
 namespace path_tracer {
 
@@ -20,26 +20,17 @@ namespace path_tracer {
 /// until no camera ray and no path is left. The steps of all stages run in one pipeline (step_pipeline.hpp).
 /// The radiance of the paths that a pass finished is computed between the ray steps of the next one
 /// (pass_radiance.hpp).
-class PathTracer {
+class PathTracer : public Tracer {
  public:
   /// `machine` has the scene image of `layout` in mono memory. Throws ProgramError, cn::PolyMemoryOverflow.
   PathTracer(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config, const Layout& layout,
              const Work& work);
 
-  /// Called between steps with the camera paths issued so far; returns false to stop early.
-  using Progress = std::function<bool(std::uint64_t paths_issued)>;
+  void run(const Progress& progress) override;
 
-  void run(const Progress& progress);
-
-  const RunCounts& counts() const { return counts_; }
+  const RunCounts& counts() const override { return counts_; }
 
  private:
-  /// Transfer rings of one pipeline.
-  struct Rings {
-    TransferRing loads;
-    TransferRing saves;
-  };
-
   bool next_is_ray_step() const { return steps_.next() != nullptr && search_->has(*steps_.next()->stage); }
   void fill_bins();
   void run_next_step();
@@ -50,7 +41,6 @@ class PathTracer {
   void plan_after_search();
   void plan_path_stage();
   void report_fill(int block);
-  static Rings make_rings(cn::Machine& machine, const ProgramConfig& config, const Layers& layers);
   static Rings make_radiance_rings(cn::Machine& machine, const ProgramConfig& config);
   StageContext context(Rings& rings) {
     return {machine_, kernels_, config_, layout_, rings.loads, rings.saves, bins_, counts_};

@@ -70,7 +70,7 @@ std::vector<const path_tracer::ProgramOption*> options_of_curves() {
 path_tracer::ProgramConfig program_for(const Scene& scene, const model::ChipConfig& chip,
                                        const path_tracer::ProgramConfig& program, const GivenOptions& given) {
   path_tracer::ProgramConfig fitted = program;
-  if (given.count("light_candidates") == 0) fitted.light_candidates = suited_light_candidates(scene);
+  if (given.count("light_candidates") == 0) fitted.light_candidates = suited_light_candidates(scene, program);
   if (given.count("estimator") == 0) fitted.estimator = suited_estimator(scene, fitted.light_candidates);
   fitted = built_for(scene, fitted);
   choose_tree(TriangleCount(scene), chip, given, fitted);

@@ -80,13 +80,19 @@ RenderRequest RenderCommand::make_request() const {
     throw InputError(
         "--waves, --transactions, --timeline: a native run has no clock and records no waves; leave out "
         "--native");
+  if (options.program.is_bidirectional() &&
+      (importance.is_given() || passes.has_target() || passes.budget(native).has_value()))
+    throw InputError(
+        "--importance, --target-error, --time-budget: found with --paths bidirectional, whose light paths "
+        "may "
+        "end in any pixel; allowed is the same number of paths in each pixel");
   request.options.observation = observation.options(request.options.chip);
   return request;
 }
 
 std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& of) const {
   if (firmware.given().count("light_candidates") == 0)
-    of.program.light_candidates = suited_light_candidates(loaded);
+    of.program.light_candidates = suited_light_candidates(loaded, of.program);
   if (firmware.given().count("estimator") == 0)
     of.program.estimator = suited_estimator(loaded, of.program.light_candidates);
   of.program = built_for(loaded, of.program);

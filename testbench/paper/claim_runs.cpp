@@ -56,6 +56,7 @@ class ClaimRunList {
     add_lengths();
     add_widths();
     add_traversals();
+    add_bidirectional();
     return std::move(runs_);
   }
 
@@ -132,6 +133,12 @@ class ClaimRunList {
       set_tree(Traversal::temporary_bin, of_tree, nodes);
       add("sub-tree of " + std::to_string(nodes), scenes_.many_triangles, of_tree);
     }
+  }
+
+  void add_bidirectional() {
+    RenderOptions options = of_program(Program::full);
+    options.program.paths = path_tracer::Paths::bidirectional;
+    add("bidirectional", scenes_.box, options);
   }
 
   RenderOptions of_program(Program program) const {

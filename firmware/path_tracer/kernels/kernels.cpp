@@ -19,6 +19,7 @@ namespace path_tracer {
 inline namespace CN_LEVEL {
 const TraversalKernels& traversal_kernel_table();
 const PacketKernels& packet_kernel_table();
+const PairKernels& pair_kernel_table();
 cn::Kernel<IntersectArguments> tree_search_kernel();
 }  // namespace CN_LEVEL
 
@@ -394,6 +395,7 @@ const Kernels& kernel_table() {
       cn::kernel<FlagArguments, flag>("flag"),
       traversal_kernel_table,
       packet_kernel_table,
+      pair_kernel_table,
   };
   return table;
 }

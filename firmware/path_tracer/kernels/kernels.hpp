@@ -249,6 +249,7 @@ struct FoldArguments {
 };
 
 struct PacketKernels;
+struct PairKernels;
 
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
@@ -272,6 +273,7 @@ struct Kernels {
   cn::Kernel<FlagArguments> flag;
   const TraversalKernels& (*traversal)();  ///< of the same level, as `packet`
   const PacketKernels& (*packet)();
+  const PairKernels& (*pair)();  ///< of bidirectional paths
 };
 
 const Kernels& kernels(Level level);

@@ -11,6 +11,19 @@ void require(bool ok, const std::string& what, const std::string& found, const s
   if (!ok) throw ProgramError(what + ": found " + found + ", allowed is " + allowed);
 }
 
+/// What bidirectional paths leave no choice of.
+void require_bidirectional(const ProgramConfig& config) {
+  const auto with_these = [](const char* allowed) {
+    return std::string(allowed) + " with paths bidirectional";
+  };
+  require(config.program == Program::full, "program", name_of(config.program), with_these("full"));
+  require(!config.bins_hits(), "shading", name_of(config.shading), with_these("every_lobe or present_lobes"));
+  require(config.light_candidates == 1, "light_candidates", std::to_string(config.light_candidates),
+          with_these("1"));
+  require(config.skips_empty_blocks, "empty_blocks", "process", with_these("skip"));
+  require(config.cull_shadow_rays, "shadow_rays", "all", with_these("facing"));
+}
+
 }  // namespace
 
 void validate(const ProgramConfig& config) {
@@ -24,6 +37,7 @@ void validate(const ProgramConfig& config) {
           "at most the bin length, " + std::to_string(config.bin_blocks) + " blocks");
   require(config.uses_tree() || config.scratchpad != Scratchpad::nodes, "scratchpad", "nodes",
           "none, triangles or fitting with traversal brute_force, which has no nodes");
+  if (config.is_bidirectional()) require_bidirectional(config);
   const NodeLayout& layout = config.tree.layout;
   require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
           "4 or 8 with node_format quantised8");

@@ -17,6 +17,12 @@ enum class Program : std::uint8_t {
   full,      ///< plus the radiance of finished paths
 };
 
+/// Where paths begin.
+enum class Paths : std::uint8_t {
+  unidirectional,  ///< at the lens
+  bidirectional,   ///< at the lens and at a light; vertices of both are joined (paper, section 5)
+};
+
 /// Where random numbers come from.
 enum class Sampler : std::uint8_t {
   philox,  ///< independent
@@ -67,6 +73,7 @@ enum class Scratchpad : std::uint8_t {
 
 inline constexpr int kMaxBuffers = 8;
 inline constexpr int kMaxLightCandidates = 8;
+inline constexpr int kMaxLightVertices = 16;
 
 /// Limits far beyond what fits the chip; they keep slot numbers within 32 bits.
 inline constexpr int kMaxBinBlocks = 65536;
@@ -79,7 +86,9 @@ inline constexpr int kVerticesPerLoad = 4;
 struct ProgramConfig {
   Features features;  ///< of the scene; PathTracer takes them from the layout
   Program program = Program::full;
-  int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
+  Paths paths = Paths::unidirectional;
+  int light_vertices = 4;  ///< of a light path that a slot keeps, at most; of bidirectional paths
+  int n = 1;               ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
   int bin_blocks = 8;      ///< length of each bin in blocks of one SIMD width
@@ -106,6 +115,7 @@ struct ProgramConfig {
   Traversal traversal = Traversal::brute_force;
   TreeShape tree;
 
+  bool is_bidirectional() const { return paths == Paths::bidirectional; }
   bool uses_tree() const { return traversal != Traversal::brute_force; }
   /// Whether hits wait in bins of their kind, instead of in their slots.
   bool bins_hits() const { return shading == Shading::material_bins || shading == Shading::texture_bins; }

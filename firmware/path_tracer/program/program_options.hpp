@@ -16,6 +16,7 @@ namespace path_tracer {
 
 /// Names of the enumerations' values, in the order of the values.
 inline constexpr std::array kProgramNames = {"segments", "direct", "full"};
+inline constexpr std::array kPathsNames = {"unidirectional", "bidirectional"};
 inline constexpr std::array kSamplerNames = {"philox", "sobol"};
 inline constexpr std::array kLightSamplingNames = {"area", "solid_angle"};
 inline constexpr std::array kEstimatorNames = {"light", "mis", "per_lobe"};
@@ -27,6 +28,9 @@ inline constexpr std::array kNodeFormatNames = {"fp64", "fp32", "quantised8"};
 
 inline const char* name_of(Program program) {
   return kProgramNames.at(std::size_t(program));
+}
+inline const char* name_of(Paths paths) {
+  return kPathsNames.at(std::size_t(paths));
 }
 inline const char* name_of(Sampler sampler) {
   return kSamplerNames.at(std::size_t(sampler));

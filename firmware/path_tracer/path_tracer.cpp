@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/path_tracer/traversals/search_choice.hpp"
+
 namespace path_tracer {
 namespace {
 

@@ -8,9 +8,9 @@
 #include "firmware/path_tracer/pipeline/ray_search.hpp"
 #include "firmware/path_tracer/pipeline/scratchpad_records.hpp"
 #include "firmware/path_tracer/pipeline/step_pipeline.hpp"
+#include "firmware/path_tracer/pipeline/tracer.hpp"
 #include "firmware/path_tracer/stages/intersection_stage.hpp"
 #include "firmware/path_tracer/stages/path_stage.hpp"
-#include "firmware/path_tracer/tracer.hpp"
 
 namespace path_tracer {
 

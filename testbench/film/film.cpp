@@ -134,7 +134,7 @@ bool Film::add_splat(int pixel_index, const glm::dvec3& radiance) {
 }
 
 void Film::take_splats() {
-  if (!splats_.empty()) return;
+  if (has_splats()) return;
   const std::size_t bytes = sums_.size() * sizeof(Squares) * (keeps_variances() ? 2 : 1);
   require_memory(bytes, "the light that light paths bring to a film of " + std::to_string(size_.width) + "x" +
                             std::to_string(size_.height) + " pixels");
@@ -169,7 +169,7 @@ void Film::merge(const Film& other) {
     for (int channel = 0; channel < 3; ++channel) sums_[i].sum[channel] += other.sums_[i].sum[channel];
     sums_[i].samples += other.sums_[i].samples;
   }
-  if (!other.splats_.empty()) take_splats();
+  if (other.has_splats()) take_splats();
   const auto add_all = [](std::vector<Squares>& to, const std::vector<Squares>& from) {
     for (std::size_t i = 0; i < from.size(); ++i)
       for (int channel = 0; channel < 3; ++channel) to[i].sum[channel] += from[i].sum[channel];
@@ -187,12 +187,13 @@ std::string Film::bytes() const {
   std::string result(byte_count(), '\0');
   char* const behind_samples = put_bytes(squares_, put_bytes(sums_, result.data()));
   std::memcpy(put_bytes(splat_squares_, put_bytes(splats_, behind_samples)), &rejected_, sizeof(rejected_));
+  result.back() = has_splats();
   return result;
 }
 
 Film Film::from_bytes(FilmSize size, double scale, FilmSums sums, const std::string& bytes) {
   Film film(size, scale, sums);
-  if (bytes.size() > film.byte_count()) film.take_splats();
+  if (!bytes.empty() && bytes.back() != 0) film.take_splats();
   if (bytes.size() != film.byte_count())
     throw std::invalid_argument("these bytes are not a film of that size and sums");
   const char* const behind_samples = get_bytes(film.squares_, get_bytes(film.sums_, bytes.data()));
@@ -203,7 +204,7 @@ Film Film::from_bytes(FilmSize size, double scale, FilmSums sums, const std::str
 
 std::size_t Film::byte_count() const {
   return sums_.size() * sizeof(Sums) +
-         (squares_.size() + splats_.size() + splat_squares_.size()) * sizeof(Squares) + sizeof(rejected_);
+         (squares_.size() + splats_.size() + splat_squares_.size()) * sizeof(Squares) + sizeof(rejected_) + 1;
 }
 
 glm::dvec3 Film::mean(int pixel_index) const {
@@ -212,7 +213,7 @@ glm::dvec3 Film::mean(int pixel_index) const {
   glm::dvec3 result;
   for (int channel = 0; channel < 3; ++channel) {
     auto sum = static_cast<Float128>(pixel.sum[channel]);
-    if (!splats_.empty())
+    if (has_splats())
       sum += static_cast<Float128>(splats_[static_cast<std::size_t>(pixel_index)].sum[channel]);
     const Float128 quotient = sum / static_cast<Float128>(pixel.samples);
     result[channel] = from_float128(quotient, sum_quantum_exponent_);

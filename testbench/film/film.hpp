@@ -118,11 +118,12 @@ class Film {
   }
   static UInt128 to_fixed_point(double value, double units);
   const Sums& at(int pixel) const { return sums_.at(static_cast<std::size_t>(pixel)); }
+  bool has_splats() const { return !splats_.empty(); }
   bool fits(const glm::dvec3& radiance) const;
   void add_to(Squares& squares, const glm::dvec3& radiance) const;
   void take_splats();
   void reject(const glm::dvec3& radiance);
-  std::size_t byte_count() const;  ///< of bytes()
+  std::size_t byte_count() const;  ///< of bytes(): all sums, what was rejected, and whether there are splats
 
   FilmSize size_;
   double scale_;

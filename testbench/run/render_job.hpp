@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "firmware/path_tracer/tracer.hpp"
+#include "firmware/path_tracer/make_tracer.hpp"
 #include "model/hazards/hazard_checker.hpp"
 #include "testbench/machine/memory_overflow.hpp"
 #include "testbench/run/render.hpp"

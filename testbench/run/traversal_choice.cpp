@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
-#include "firmware/path_tracer/tracer.hpp"
+#include "firmware/path_tracer/make_tracer.hpp"
 #include "testbench/machine/native_machine.hpp"
 #include "testbench/system/error.hpp"
 

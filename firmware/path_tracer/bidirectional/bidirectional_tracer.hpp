@@ -8,7 +8,8 @@
 #include "firmware/path_tracer/pipeline/pass.hpp"
 #include "firmware/path_tracer/pipeline/results_handover.hpp"
 #include "firmware/path_tracer/pipeline/scratchpad_records.hpp"
-#include "firmware/path_tracer/tracer.hpp"
+#include "firmware/path_tracer/pipeline/step_pipeline.hpp"
+#include "firmware/path_tracer/traversals/search_choice.hpp"
 
 namespace path_tracer {
 

@@ -28,7 +28,14 @@ void ConnectionStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const Loads to = loads(step);
   const PairContext::Block& pairs = pairs_.block(block);
-  load_block(step, block, to.pair, context_.layout.pair_bin, pairs.occupied, pairs_.sizes.pair);
+  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
+  const auto load_part = [&](const PairContext::Part& part, const LaneMask& needed) {
+    context_.loads.copy_m2p(step, block, PairContext::span(to.pair, part), pairs_.places(slots, part),
+                            needed);
+  };
+  load_part(PairContext::of_connections(), pairs.occupied);
+  load_part(pairs_.of_segments(), pairs.needs_segment);
+  load_part(pairs_.window(), pairs.needs_far);
   const auto gather = [&](cn::PolySpan span, PolyField<MonoAddress> place, const LaneMask& needed) {
     context_.loads.copy_m2p(step, block, span, context_.machine.places_in(place), needed);
   };
@@ -48,10 +55,8 @@ void ConnectionStage::process(std::uint64_t step, int block) {
                        {from.pair.span().offset_bytes, to.pair.span().offset_bytes, pairs_.sizes.pair},
                        pairs.occupied);
   LaneMask connects;
-  LaneMask to_lens;
-  LaneMask to_vertex;
   LaneMask culled;
-  pairs.of_light = LaneMask{};
+  pairs.of_light = pairs.to_lens = pairs.to_vertex = LaneMask{};
   ConnectArguments arguments;
   arguments.world = pairs_.world;
   arguments.pair_sizes = pairs_.sizes;
@@ -72,32 +77,38 @@ void ConnectionStage::process(std::uint64_t step, int block) {
   arguments.far_vertex = from.far_vertex;
   arguments.ray = to.ray.ray;
   arguments.connects = &connects;
-  arguments.to_lens = &to_lens;
-  arguments.to_vertex = &to_vertex;
+  arguments.to_lens = &pairs.to_lens;
+  arguments.to_vertex = &pairs.to_vertex;
   arguments.of_light = &pairs.of_light;
   arguments.is_culled = &culled;
   context_.machine.run(pairs_.kernels.connect, arguments, pairs.occupied);
   bin.live = pairs.occupied;
   bin.shadow = connects;
-  count(to_lens, to_vertex, connects, pairs.of_light, culled);
+  count(pairs, connects, culled);
 }
 
 /// Statistics of the simulator; the chip does not count, so this is free.
-void ConnectionStage::count(const LaneMask& to_lens, const LaneMask& to_vertex, const LaneMask& connects,
-                            const LaneMask& of_light, const LaneMask& culled) {
+void ConnectionStage::count(const PairContext::Block& pairs, const LaneMask& connects,
+                            const LaneMask& culled) {
+  const auto of = [](const LaneMask& lanes) { return std::uint64_t(lanes.count()); };
   ConnectionCounts& counts = context_.counts.connections;
-  counts.light_segments += std::uint64_t(of_light.count());
-  counts.to_lens += std::uint64_t(to_lens.count());
-  counts.to_light_vertices += std::uint64_t(to_vertex.count());
-  counts.to_lights +=
-      std::uint64_t(connects.count()) - std::uint64_t(to_lens.count()) - std::uint64_t(to_vertex.count());
-  context_.counts.culled_shadow_rays += std::uint64_t(culled.count());
+  counts.light_segments += of(pairs.of_light);
+  counts.to_lens += of(pairs.to_lens);
+  counts.to_light_vertices += of(pairs.to_vertex);
+  counts.to_lights += of(connects) - of(pairs.to_lens) - of(pairs.to_vertex);
+  context_.counts.culled_shadow_rays += of(culled);
 }
 
 void ConnectionStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   const PairContext::Block& pairs = pairs_.block(block);
-  save_block(step, block, context_.layout.pair_bin, from.pair, pairs.occupied, pairs_.sizes.pair);
+  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
+  const auto save_part = [&](const PairContext::Part& part, const LaneMask& lanes) {
+    context_.saves.copy_p2m(step, block, pairs_.places(slots, part), PairContext::span(from.pair, part),
+                            lanes);
+  };
+  save_part(PairContext::of_connections(), pairs.occupied);
+  save_part(pairs_.of_segments(), pairs.starts);
   rays_.save(context_.saves, step, {block}, from.ray, bin_block(block).light_place, pairs.occupied);
 }
 

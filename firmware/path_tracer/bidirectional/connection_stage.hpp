@@ -34,8 +34,7 @@ class ConnectionStage : public Stage {
   };
   Loads loads(std::uint64_t step) const;
   Saves saves(std::uint64_t step) const;
-  void count(const LaneMask& to_lens, const LaneMask& to_vertex, const LaneMask& connects,
-             const LaneMask& of_light, const LaneMask& culled);
+  void count(const PairContext::Block& pairs, const LaneMask& connects, const LaneMask& culled);
 
   PairContext& pairs_;
   RayStore& rays_;

@@ -86,6 +86,8 @@ struct LocateFarArguments {
   LaneMask* needs_emission = nullptr;
   LaneMask* needs_near = nullptr;
   LaneMask* needs_far = nullptr;
+  LaneMask* needs_segment = nullptr;  ///< what connections do not need of a PairRecord
+  LaneMask* starts = nullptr;         ///< a path
 };
 
 /// Connection stage: the ray of each slot.

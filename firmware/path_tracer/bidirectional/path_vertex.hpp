@@ -23,7 +23,6 @@ struct PathVertex {
   poly<double> connects_before;
   poly<double> light_sum;
   poly<std::int32_t> face;
-  poly<std::int32_t> light;
 };
 
 inline BsdfConfig pair_bsdf_config(const Features& features, bool skips_absent_lobes) {
@@ -33,6 +32,10 @@ inline BsdfConfig pair_bsdf_config(const Features& features, bool skips_absent_l
   config.diffuse_pdf = true;
   config.skips_absent_lobes = skips_absent_lobes;
   return config;
+}
+
+inline mask is_ray(const poly<std::int32_t>& ray, PairRay wanted) {
+  return ray == poly<std::int32_t>(static_cast<std::int32_t>(wanted));
 }
 
 inline poly<double> one_or_none(const mask& condition) {
@@ -51,7 +54,6 @@ inline void store_vertex(const PathVertex& vertex, const PairSizes& sizes, const
   to.set(&PathVertexRecord::connects_before, vertex.connects_before);
   to.set(&PathVertexRecord::light_sum, vertex.light_sum);
   to.set(&PathVertexRecord::face, vertex.face);
-  to.set(&PathVertexRecord::light, vertex.light);
   if (sizes.normal != 0)
     tail<VertexNormalRecord>(to, sizes.normal).set(&VertexNormalRecord::normal, vertex.shading_normal);
   if (sizes.material == 0) return;
@@ -91,7 +93,6 @@ inline PathVertex load_vertex(const PairSizes& sizes, const Lobes& lobes,
   vertex.connects_before.assign_all_lanes(from.get(&PathVertexRecord::connects_before));
   vertex.light_sum.assign_all_lanes(from.get(&PathVertexRecord::light_sum));
   vertex.face.assign_all_lanes(from.get(&PathVertexRecord::face));
-  vertex.light.assign_all_lanes(from.get(&PathVertexRecord::light));
   if (sizes.normal != 0)
     bsdf_detail::assign(vertex.shading_normal,
                         tail<VertexNormalRecord>(from, sizes.normal).get(&VertexNormalRecord::normal));

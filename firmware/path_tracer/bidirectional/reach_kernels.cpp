@@ -7,10 +7,6 @@
 namespace path_tracer {
 namespace {
 
-mask is_ray(const PolyPointer<PairRecord>& pair, PairRay ray) {
-  return pair.get(&PairRecord::ray) == poly<std::int32_t>(static_cast<std::int32_t>(ray));
-}
-
 /// How a segment arrived.
 struct Arrival {
   mask is_light;  ///< of a light path
@@ -36,7 +32,7 @@ Rgb share_let_through(const ReachArguments& arguments, const mask& is_light, con
 Arrival arrive(const ReachArguments& arguments) {
   const auto record = tail<ArrivalRecord>(arguments.hit);
   Arrival arrival;
-  arrival.is_light = is_ray(arguments.pair, PairRay::light_segment);
+  arrival.is_light = is_ray(arguments.pair.get(&PairRecord::ray), PairRay::light_segment);
   arrival.hit = arguments.hit.get(&HitRecord::hit) != 0;
   arrival.front = arguments.hit.get(&HitRecord::front) != 0;
   bsdf_detail::assign(arrival.position, arguments.hit.get(&HitRecord::position));
@@ -165,7 +161,6 @@ PathVertex vertex_at_hit(const ReachArguments& arguments, const Arrival& arrival
   vertex.connects_before.assign_all_lanes(arguments.pair.get(&PairRecord::connects));
   vertex.light_sum.assign_all_lanes(arguments.pair.get(&PairRecord::light_sum));
   vertex.face.assign_all_lanes(arguments.surface.get(&SurfaceRecord::face));
-  vertex.light.assign_all_lanes(arguments.surface.get(&SurfaceRecord::light));
   return vertex;
 }
 

@@ -77,9 +77,30 @@ void VertexStage::load(std::uint64_t step, int block) {
   const Bins::Block& bin = bin_block(block);
   const RecordSizes& sizes = context_.layout.sizes;
   load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live, sizes.hit);
-  load_surfaces(context_, step, block, bin, {to.hit, to.surface, to.look_ups});
-  load_block(step, block, to.pair, context_.layout.pair_bin, bin.live, pairs_.sizes.pair);
+  load_hit_surfaces(step, block);
+  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
+  const auto load_part = [&](const PairContext::Part& part, const LaneMask& needed) {
+    context_.loads.copy_m2p(step, block, PairContext::span(to.pair, part), pairs_.places(slots, part),
+                            needed);
+  };
+  load_part(PairContext::of_connections(), bin.live);
+  load_part(pairs_.of_segments(), bin.segments());
   load_block(step, block, to.heads, context_.layout.light_heads, eye_hits(block), pairs_.sizes.heads);
+}
+
+/// A connection needs of what it hit only the face, and a light's emission; one to the lens needs nothing.
+void VertexStage::load_hit_surfaces(std::uint64_t step, int block) {
+  const Loads to = loads(step);
+  const Bins::Block& bin = bin_block(block);
+  const PairContext::Block& pairs = pairs_.block(block);
+  Bins::Block whole = bin;
+  whole.hit_something = bin.hit_something.without(pairs.to_lens).without(pairs.to_vertex);
+  load_surfaces(context_, step, block, whole, {to.hit, to.surface, to.look_ups});
+  constexpr int kFace = int{offsetof(SurfaceRecord, face)};
+  context_.loads.copy_m2p(step, block,
+                          {to.surface.span().offset_bytes + kFace, int{sizeof(SurfaceRecord)} - kFace},
+                          context_.machine.places_in(bin.surface_place, kFace),
+                          bin.hit_something.without(whole.hit_something).without(pairs.to_lens));
 }
 
 void VertexStage::prepare(std::uint64_t step, int block) {
@@ -243,11 +264,13 @@ void VertexStage::begin_pairs(std::uint64_t step, int block) {
   context_.machine.run(pairs_.kernels.begin_pair, arguments, ended_);
   camera_rays_.issue(std::uint64_t(begun));
   pairs.occupied = bin_block(block).live.without(ended_).with(begins);
+  reached_ = bin_block(block).segments().without(ended_);
 }
 
 void VertexStage::locate_far(std::uint64_t step, int block) {
   PairContext::Block& pairs = pairs_.block(block);
   pairs.needs_light = pairs.needs_emission = pairs.needs_near = pairs.needs_far = LaneMask{};
+  pairs.needs_segment = pairs.starts = LaneMask{};
   LocateFarArguments arguments;
   arguments.pair = saves(step).pair;
   if (pairs_.world.has_lights) arguments.light_table = read_light_table(context_.machine, context_.layout);
@@ -266,12 +289,14 @@ void VertexStage::locate_far(std::uint64_t step, int block) {
   arguments.needs_emission = &pairs.needs_emission;
   arguments.needs_near = &pairs.needs_near;
   arguments.needs_far = &pairs.needs_far;
+  arguments.needs_segment = &pairs.needs_segment;
+  arguments.starts = &pairs.starts;
   context_.machine.run(pairs_.kernels.locate_far, arguments, pairs.occupied);
 }
 
 void VertexStage::fill(std::uint64_t step, int block) {
   vertices_ = light_vertices_ = result_lanes_ = LaneMask{};
-  bin_block(block).live = LaneMask{};
+  bin_block(block).live = bin_block(block).shadow = LaneMask{};
   ended_ = LaneMask::first(num_pes());
   begin_pairs(step, block);
   locate_far(step, block);
@@ -302,8 +327,14 @@ void VertexStage::save(std::uint64_t step, int block) {
   scatter(with_tail(from.vertex, pairs_.sizes.vertex), from.vertex_place, vertices_);
   scatter(from.head.span(), from.head_place, light_vertices_);
   scatter(from.result.span(), from.result_place, result_lanes_);
-  save_block(step, block, context_.layout.pair_bin, from.pair, pairs_.block(block).occupied,
-             pairs_.sizes.pair);
+  const PairContext::Block& pairs = pairs_.block(block);
+  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
+  const auto save_part = [&](const PairContext::Part& part, const LaneMask& lanes) {
+    context_.saves.copy_p2m(step, block, pairs_.places(slots, part), PairContext::span(from.pair, part),
+                            lanes);
+  };
+  save_part(PairContext::of_connections(), pairs.occupied);
+  save_part(pairs_.of_segments(), reached_);
 }
 
 }  // namespace path_tracer

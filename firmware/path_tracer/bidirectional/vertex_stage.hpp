@@ -60,6 +60,7 @@ class VertexStage : public Stage {
   MonoAddress block_vertices(int block) const;
   MonoAddress block_heads(int block) const;
   LaneMask eye_hits(int block) const;
+  void load_hit_surfaces(std::uint64_t step, int block);
   void look_up_sky(std::uint64_t step, int block);
   void reach(std::uint64_t step, int block);
   void see(std::uint64_t step, int block);
@@ -83,6 +84,7 @@ class VertexStage : public Stage {
   LaneMask light_vertices_;
   LaneMask reached_lens_;
   LaneMask ended_;
+  LaneMask reached_;  ///< slots whose path goes on from a segment that was traced
   LaneMask result_lanes_;
   std::vector<std::uint32_t> segments_;  ///< of the eye path in each slot; for RunCounts only
 };

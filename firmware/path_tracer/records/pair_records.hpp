@@ -22,7 +22,8 @@ enum class PairRay : std::int32_t {
 
 /// Record of the path bin: the pair of paths in a slot, and how far it is. It begins as a CameraSampleRecord
 /// does. The names of densities and sums are those of weights.hpp. A window of light_vertices doubles, the
-/// eye path's sums over other strategies, follows.
+/// eye path's sums over other strategies, follows. What segments alone need comes last, so that the rays of
+/// connections, which are most, load and save no more than the first bytes.
 struct PairRecord {
   std::int32_t pixel = 0;
   std::int32_t sample = 0;
@@ -40,6 +41,7 @@ struct PairRecord {
   double light_v = 0;
   vec3<double> radiance{};      ///< of the eye path so far
   vec3<double> contribution{};  ///< of the connection, if nothing is in between
+  // Of segments:
   vec3<double> position{};      ///< where the next segment starts
   vec3<double> direction{};     ///< of unit length
   vec3<double> throughput{};    ///< of the next segment
@@ -68,7 +70,7 @@ struct PathVertexRecord {
   double connects_before = 0;
   double light_sum = 0;
   std::int32_t face = kNoFace;
-  std::int32_t light = kNoLight;  ///< SurfaceRecord::light
+  std::int32_t unused = 0;
 };
 struct VertexNormalRecord {
   vec3<double> normal{};  ///< of shading, on the triangle's front
@@ -98,6 +100,9 @@ struct LightHeadRecord {
   std::int32_t sides = 0;  ///< that scatter light: 0 for mirrors and clear glass, 1, or 2 if some passes
   std::int32_t unused = 0;
 };
+
+/// Bytes of a PairRecord that every ray needs.
+inline constexpr int kPairBytesOfConnections = int{offsetof(PairRecord, position)};
 
 /// What a light emits: radiance of a light with triangles, which LightRecord does not have.
 struct LightEmissionRecord {

@@ -164,7 +164,9 @@ TEST_F(PairWeights, AreThoseOfTheDensitiesOfWholePaths) {
               << "strategy " << s << " of a path of " << k << " segments, " << light_vertices
               << " light vertices";
         }
-        if (sum > 0) EXPECT_NEAR(sum, 1, 1e-12);
+        if (sum > 0) {
+          EXPECT_NEAR(sum, 1, 1e-12);
+        }
       }
   EXPECT_GT(allowed, 1000);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/film/image_agreement.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/run/traversal_choice.hpp"
@@ -165,28 +166,35 @@ TEST(Bidirectional, OpposedSquaresHaveTheirConfigurationFactor) {
 
 using Change = std::function<void(RenderOptions&)>;
 
-TEST(Bidirectional, GivesTheSameBitsHoweverItIsComputed) {
-  const Scene scene = shipped("glass", {12, 10});
-  RenderOptions options = options_of(Paths::bidirectional, 2);
+void expect_same_bits(const Scene& scene, const std::vector<Change>& changes) {
+  const RenderOptions options = options_of(Paths::bidirectional, 2);
   const std::string expected = render_natively(scene, options).film.sha256();
-  const std::vector<Change> changes = {
-      [](RenderOptions& of) { of.program.n = 0; },
-      [](RenderOptions& of) { of.program.n = 3; },
-      [](RenderOptions& of) { of.program.bin_blocks = 3; },
-      [](RenderOptions& of) { of.chip.chip.pes = 32; },
-      [](RenderOptions& of) { of.program.pixel_stride = 7; },
-      [](RenderOptions& of) { of.program.shading = path_tracer::Shading::every_lobe; },
-      [](RenderOptions& of) { testbench::search_natively(of); },
-      [](RenderOptions& of) {
-        of.program.n = 1;
-        of.program.bin_blocks = 4;
-        of.check_hazards = true;
-      }};
-  for (const Change& change : changes) {
+  for (std::size_t i = 0; i < changes.size(); ++i) {
     RenderOptions changed = options;
-    change(changed);
-    EXPECT_EQ(render_natively(scene, changed).film.sha256(), expected);
+    changes[i](changed);
+    EXPECT_EQ(render_natively(scene, changed).film.sha256(), expected) << scene.name << ", change " << i;
   }
+}
+
+TEST(Bidirectional, GivesTheSameBitsHoweverItIsComputed) {
+  const Change without_buffering = [](RenderOptions& of) { of.program.n = 0; };
+  const Change with_short_bins = [](RenderOptions& of) { of.program.bin_blocks = 3; };
+  const Change on_few_pes = [](RenderOptions& of) { of.chip.chip.pes = 32; };
+  const Change with_stride = [](RenderOptions& of) { of.program.pixel_stride = 7; };
+  const Change through_the_simulators_tree = [](RenderOptions& of) { testbench::search_natively(of); };
+  const Change with_every_lobe = [](RenderOptions& of) {
+    of.program.shading = path_tracer::Shading::every_lobe;
+  };
+  const Change with_hazards_checked = [](RenderOptions& of) {
+    of.program.bin_blocks = 4;
+    of.check_hazards = true;
+  };
+  expect_same_bits(shipped("glass", {12, 10}),
+                   {without_buffering, with_short_bins, on_few_pes, with_stride, through_the_simulators_tree,
+                    with_every_lobe, with_hazards_checked});
+  const Change twice_buffered = [](RenderOptions& of) { of.program.n = 2; };
+  expect_same_bits(shipped("cornell_box", {12, 10}),
+                   {without_buffering, twice_buffered, on_few_pes, with_hazards_checked});
 }
 
 TEST(Bidirectional, GivesTheSameBitsByEveryTraversal) {

@@ -25,7 +25,6 @@ struct ReachArguments : ShadeArguments {
   PolyPointer<LightHeadRecord> heads;
   PolyPointer<PathVertexRecord> vertex;
   PolyPointer<LightHeadRecord> head;
-  int first_slot = 0;
   MonoAddress block_vertices = 0;  ///< of the block's first slot
   MonoAddress block_heads = 0;
   PolyField<MonoAddress> vertex_place;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/cn/language/indexed.hpp"
+#include "firmware/cn/language/poly_pointer.hpp"
 #include "firmware/path_tracer/records/pair_records.hpp"
 #include "firmware/path_tracer/sampling/sampling.hpp"
 

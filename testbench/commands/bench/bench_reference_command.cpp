@@ -67,8 +67,8 @@ RenderResult BenchReferenceCommand::render(const Scene& loaded, const RenderOpti
   return result;
 }
 
-/// Light found by hits only, by other random numbers, on paths from the lens alone. No hit finds a light without area. Scenes with such
-/// lights have shadow rays in both images, but others choose and weigh them.
+/// Light found by hits only, by other random numbers, on paths from the lens alone. No hit finds a light
+/// without area. Scenes with such lights have shadow rays in both images, but others choose and weigh them.
 SecondEstimator BenchReferenceCommand::second_estimator(const Scene& loaded) const {
   RenderOptions second = options;
   second.program.seed = options.program.seed + 1;

@@ -28,14 +28,12 @@ void ConnectionStage::load(std::uint64_t step, int block) {
   context_.saves.wait_block(block);
   const Loads to = loads(step);
   const PairContext::Block& pairs = pairs_.block(block);
-  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
-  const auto load_part = [&](const PairContext::Part& part, const LaneMask& needed) {
-    context_.loads.copy_m2p(step, block, PairContext::span(to.pair, part), pairs_.places(slots, part),
-                            needed);
+  const auto load_pairs = [&](int bytes, const LaneMask& lanes) {
+    context_.loads.copy_m2p(step, block, with_tail(to.pair, bytes),
+                            block_of(context_.layout.pair_bin, block, pairs_.sizes.pair), lanes);
   };
-  load_part(PairContext::of_connections(), pairs.occupied);
-  load_part(pairs_.of_segments(), pairs.needs_segment);
-  load_part(pairs_.window(), pairs.needs_far);
+  load_pairs(pairs_.sizes.pair, pairs.needs_segment);
+  load_pairs(kPairBytesOfConnections, pairs.occupied.without(pairs.needs_segment));
   const auto gather = [&](cn::PolySpan span, PolyField<MonoAddress> place, const LaneMask& needed) {
     context_.loads.copy_m2p(step, block, span, context_.machine.places_in(place), needed);
   };
@@ -102,13 +100,12 @@ void ConnectionStage::count(const PairContext::Block& pairs, const LaneMask& con
 void ConnectionStage::save(std::uint64_t step, int block) {
   const Saves from = saves(step);
   const PairContext::Block& pairs = pairs_.block(block);
-  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
-  const auto save_part = [&](const PairContext::Part& part, const LaneMask& lanes) {
-    context_.saves.copy_p2m(step, block, pairs_.places(slots, part), PairContext::span(from.pair, part),
-                            lanes);
+  const auto save_pairs = [&](int bytes, const LaneMask& lanes) {
+    context_.saves.copy_p2m(step, block, block_of(context_.layout.pair_bin, block, pairs_.sizes.pair),
+                            with_tail(from.pair, bytes), lanes);
   };
-  save_part(PairContext::of_connections(), pairs.occupied);
-  save_part(pairs_.of_segments(), pairs.starts);
+  save_pairs(pairs_.sizes.pair, pairs.starts);
+  save_pairs(kPairBytesOfConnections, pairs.occupied.without(pairs.starts));
   rays_.save(context_.saves, step, {block}, from.ray, bin_block(block).light_place, pairs.occupied);
 }
 

@@ -17,7 +17,7 @@ struct PairContext {
     LaneMask needs_emission;
     LaneMask needs_near;
     LaneMask needs_far;
-    LaneMask needs_segment;  ///< what connections do not need of a PairRecord
+    LaneMask needs_segment;  ///< slots that need all of their PairRecord
     LaneMask starts;         ///< slots that start a path
     LaneMask to_lens;        ///< slots whose ray is a connection to the lens
     LaneMask to_vertex;      ///< or to a vertex of the light path
@@ -34,25 +34,6 @@ struct PairContext {
   std::vector<Block> blocks;
 
   Block& block(int number) { return blocks[std::size_t(number)]; }
-
-  /// Bytes of a PairRecord and its window.
-  struct Part {
-    int offset_bytes;
-    int size_bytes;
-  };
-  static constexpr Part of_connections() { return {0, kPairBytesOfConnections}; }
-  Part of_segments() const { return {kPairBytesOfConnections, sizes.pair - kPairBytesOfConnections}; }
-  Part window() const { return {sizes.window, sizes.pair - sizes.window}; }
-  MonoAddress first_pair(const Layout& layout, std::uint64_t slot) const {
-    return layout.pair_bin.address + slot * std::uint64_t(sizes.pair);
-  }
-  /// @param slots first_pair() of a block
-  cn::MonoPlaces places(MonoAddress slots, const Part& part) const {
-    return cn::MonoPlaces::array(slots + std::uint64_t(part.offset_bytes), std::uint64_t(sizes.pair));
-  }
-  static cn::PolySpan span(PolyPointer<PairRecord> pair, const Part& part) {
-    return {pair.span().offset_bytes + part.offset_bytes, part.size_bytes};
-  }
 };
 
 }  // namespace path_tracer

@@ -78,13 +78,12 @@ void VertexStage::load(std::uint64_t step, int block) {
   const RecordSizes& sizes = context_.layout.sizes;
   load_block(step, block, to.hit, context_.layout.intersection_bin, bin.live, sizes.hit);
   load_hit_surfaces(step, block);
-  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
-  const auto load_part = [&](const PairContext::Part& part, const LaneMask& needed) {
-    context_.loads.copy_m2p(step, block, PairContext::span(to.pair, part), pairs_.places(slots, part),
-                            needed);
+  const auto load_pairs = [&](int bytes, const LaneMask& lanes) {
+    context_.loads.copy_m2p(step, block, with_tail(to.pair, bytes),
+                            block_of(context_.layout.pair_bin, block, pairs_.sizes.pair), lanes);
   };
-  load_part(PairContext::of_connections(), bin.live);
-  load_part(pairs_.of_segments(), bin.segments());
+  load_pairs(pairs_.sizes.pair, bin.segments());
+  load_pairs(kPairBytesOfConnections, bin.shadow);
   load_block(step, block, to.heads, context_.layout.light_heads, eye_hits(block), pairs_.sizes.heads);
 }
 
@@ -270,7 +269,8 @@ void VertexStage::begin_pairs(std::uint64_t step, int block) {
 void VertexStage::locate_far(std::uint64_t step, int block) {
   PairContext::Block& pairs = pairs_.block(block);
   pairs.needs_light = pairs.needs_emission = pairs.needs_near = pairs.needs_far = LaneMask{};
-  pairs.needs_segment = pairs.starts = LaneMask{};
+  LaneMask segments;
+  pairs.starts = LaneMask{};
   LocateFarArguments arguments;
   arguments.pair = saves(step).pair;
   if (pairs_.world.has_lights) arguments.light_table = read_light_table(context_.machine, context_.layout);
@@ -289,9 +289,10 @@ void VertexStage::locate_far(std::uint64_t step, int block) {
   arguments.needs_emission = &pairs.needs_emission;
   arguments.needs_near = &pairs.needs_near;
   arguments.needs_far = &pairs.needs_far;
-  arguments.needs_segment = &pairs.needs_segment;
+  arguments.needs_segment = &segments;
   arguments.starts = &pairs.starts;
   context_.machine.run(pairs_.kernels.locate_far, arguments, pairs.occupied);
+  pairs.needs_segment = segments.with(pairs.needs_far);
 }
 
 void VertexStage::fill(std::uint64_t step, int block) {
@@ -328,13 +329,12 @@ void VertexStage::save(std::uint64_t step, int block) {
   scatter(from.head.span(), from.head_place, light_vertices_);
   scatter(from.result.span(), from.result_place, result_lanes_);
   const PairContext::Block& pairs = pairs_.block(block);
-  const MonoAddress slots = pairs_.first_pair(context_.layout, first_slot(block));
-  const auto save_part = [&](const PairContext::Part& part, const LaneMask& lanes) {
-    context_.saves.copy_p2m(step, block, pairs_.places(slots, part), PairContext::span(from.pair, part),
-                            lanes);
+  const auto save_pairs = [&](int bytes, const LaneMask& lanes) {
+    context_.saves.copy_p2m(step, block, block_of(context_.layout.pair_bin, block, pairs_.sizes.pair),
+                            with_tail(from.pair, bytes), lanes);
   };
-  save_part(PairContext::of_connections(), pairs.occupied);
-  save_part(pairs_.of_segments(), reached_);
+  save_pairs(pairs_.sizes.pair, reached_);
+  save_pairs(kPairBytesOfConnections, pairs.occupied.without(reached_));
 }
 
 }  // namespace path_tracer

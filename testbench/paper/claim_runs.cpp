@@ -138,6 +138,7 @@ class ClaimRunList {
   void add_bidirectional() {
     RenderOptions options = of_program(Program::full);
     options.program.paths = path_tracer::Paths::bidirectional;
+    options.program.cull_shadow_rays = true;
     add("bidirectional", scenes_.box, options);
   }
 

@@ -2,49 +2,22 @@
 
 #include <algorithm>
 
-#include "firmware/path_tracer/resident/resident_tracer.hpp"
-#include "firmware/path_tracer/traversals/ray_unit_search.hpp"
-#include "firmware/path_tracer/traversals/tree_search.hpp"
+#include "firmware/path_tracer/traversals/search_choice.hpp"
 
 namespace path_tracer {
 namespace {
 
-/// Where unoptimised Cn keeps its locals; the stack lies at the low end of poly SRAM (SDK Reference
-/// Manual 3.1, p. 163).
-constexpr int kStackBytes = 1024;
-
-int load_buffer_bytes(const ProgramConfig& config, const Layers& layers) {
+int load_buffer_bytes(const ProgramConfig& config) {
   return std::max(
-      {RayStage::kLoadBytes, IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
-       config.is_stream() ? std::max(StreamPathStage::load_bytes(config), ScanStage::kLoadBytes) : 0,
-       config.walks_tree() ? TreeStage::load_bytes(config.tree, layers) : 0});
+      {IntersectionStage::load_bytes(config), PathStage::load_bytes(config),
+       config.is_stream() ? std::max(StreamPathStage::load_bytes(config), ScanStage::kLoadBytes) : 0});
 }
 
 int save_buffer_bytes(const ProgramConfig& config) {
   return std::max(
-      {RayStage::save_bytes(config), IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
+      {IntersectionStage::save_bytes(config), PathStage::save_bytes(config),
        config.is_stream() ? std::max(StreamPathStage::save_bytes(config), ScanStage::kSaveBytes) : 0,
-       config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0,
-       config.walks_tree() ? TreeStage::save_bytes(config) : 0});
-}
-
-ProgramConfig built_for(const Layout& layout, ProgramConfig config) {
-  validate(config);
-  config.features = layout.features;
-  return config;
-}
-
-cn::Machine& with_semaphores_and_stack(cn::Machine& machine) {
-  HostSemaphores::allocate(machine);
-  machine.poly_memory().allocate("stack", kStackBytes);
-  return machine;
-}
-
-/// @param layout of `context`; a search may move bins
-std::unique_ptr<RaySearch> make_search(const StageContext& context, Layout& layout) {
-  if (context.config.traversal == Traversal::brute_force) return std::make_unique<BruteForceSearch>(context);
-  if (context.config.hands_rays_to_unit()) return std::make_unique<RayUnitSearch>(context, layout);
-  return std::make_unique<TreeSearch>(context);
+       config.bins_hits() ? BinnedIntersectionStage::save_bytes(config) : 0});
 }
 
 std::unique_ptr<PathStage> make_path_stage(const StageContext& context, RayStore& rays, const Work& work) {
@@ -64,16 +37,7 @@ std::unique_ptr<SlotStates> make_slot_states(const StageContext& context) {
 
 }  // namespace
 
-PathTracer::Rings PathTracer::make_rings(cn::Machine& machine, const ProgramConfig& config,
-                                         const Layers& layers) {
-  return {
-      {machine,
-       "load buffer",
-       {config.load_buffers(), load_buffer_bytes(config, layers), !config.buffers_loads()}},
-      {machine, "save buffer", {config.save_buffers(), save_buffer_bytes(config), !config.buffers_saves()}}};
-}
-
-PathTracer::Rings PathTracer::make_radiance_rings(cn::Machine& machine, const ProgramConfig& config) {
+Rings PathTracer::make_radiance_rings(cn::Machine& machine, const ProgramConfig& config) {
   return {{machine,
            "radiance load buffer",
            {PassRadiance::load_buffers(config), PassRadiance::load_bytes(config), !config.buffers_loads()}},
@@ -87,7 +51,8 @@ PathTracer::PathTracer(cn::Machine& machine, const Kernels& kernels, const Progr
       config_(built_for(layout, config)),
       layout_(layout),
       bins_(make_bins(machine.poly_memory(), config_)),
-      rings_(make_rings(machine, config_, layout.layers)),
+      rings_(make_rings(machine, config_, layout.layers, load_buffer_bytes(config_),
+                        save_buffer_bytes(config_))),
       radiance_rings_(make_radiance_rings(machine, config_)),
       scratchpad_(machine, rings_.loads, config_.scratchpad, layout_),
       search_(make_search(context(rings_), layout_)),
@@ -181,16 +146,6 @@ void PathTracer::plan_path_stage() {
 
 void PathTracer::report_fill(int block) {
   machine_.report_fill(block, bins_.blocks[std::size_t(block)].live);
-}
-
-RunCounts trace_paths(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
-                      const Layout& layout, const Work& work, const PathTracer::Progress& progress) {
-  const auto run = [&](auto&& tracer) {
-    tracer.run(progress);
-    return tracer.counts();
-  };
-  return config.keeps_paths_in_sram() ? run(ResidentTracer(machine, kernels, config, layout, work))
-                                      : run(PathTracer(machine, kernels, config, layout, work));
 }
 
 }  // namespace path_tracer

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include "firmware/path_tracer/pipeline/hit_binning.hpp"
@@ -10,6 +9,7 @@
 #include "firmware/path_tracer/pipeline/scratchpad_records.hpp"
 #include "firmware/path_tracer/pipeline/step_pipeline.hpp"
 #include "firmware/path_tracer/pipeline/stream_paths.hpp"
+#include "firmware/path_tracer/pipeline/tracer.hpp"
 #include "firmware/path_tracer/stages/intersection_stage.hpp"
 #include "firmware/path_tracer/stages/stream_path_stage.hpp"
 
@@ -21,26 +21,17 @@ namespace path_tracer {
 /// until no camera ray and no path is left. The steps of all stages run in one pipeline (step_pipeline.hpp).
 /// The radiance of the paths that a pass finished is computed between the ray steps of the next one
 /// (pass_radiance.hpp).
-class PathTracer {
+class PathTracer : public Tracer {
  public:
   /// `machine` has the scene image of `layout` in mono memory. Throws ProgramError, cn::PolyMemoryOverflow.
   PathTracer(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config, const Layout& layout,
              const Work& work);
 
-  /// Called between steps with the camera paths issued so far; returns false to stop early.
-  using Progress = std::function<bool(std::uint64_t paths_issued)>;
+  void run(const Progress& progress) override;
 
-  void run(const Progress& progress);
-
-  const RunCounts& counts() const { return counts_; }
+  const RunCounts& counts() const override { return counts_; }
 
  private:
-  /// Transfer rings of one pipeline.
-  struct Rings {
-    TransferRing loads;
-    TransferRing saves;
-  };
-
   bool next_is_ray_step() const { return steps_.next() != nullptr && search_->has(*steps_.next()->stage); }
   void fill_bins();
   void run_next_step();
@@ -51,7 +42,6 @@ class PathTracer {
   void plan_after_search();
   void plan_path_stage();
   void report_fill(int block);
-  static Rings make_rings(cn::Machine& machine, const ProgramConfig& config, const Layers& layers);
   static Rings make_radiance_rings(cn::Machine& machine, const ProgramConfig& config);
   StageContext context(Rings& rings) {
     return {machine_, kernels_, config_, layout_, rings.loads, rings.saves, bins_, counts_};
@@ -76,10 +66,5 @@ class PathTracer {
   PassRadiance radiance_;
   Pass pass_;
 };
-
-/// Runs the main program that the configuration asks for: PathTracer, or ResidentTracer. Throws what its
-/// constructor throws.
-RunCounts trace_paths(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
-                      const Layout& layout, const Work& work, const PathTracer::Progress& progress);
 
 }  // namespace path_tracer

@@ -43,8 +43,7 @@ std::string claims_text(const std::vector<JudgedClaim>& claims) {
     }));
   };
   return text + "\n" + std::to_string(claims.size()) + " claims: " + count(Verdict::holds) + " true, " +
-         count(Verdict::partly) + " partly, " + count(Verdict::fails) + " not so, " +
-         count(Verdict::not_modelled) + " not on this model\n";
+         count(Verdict::partly) + " partly, " + count(Verdict::fails) + " not so\n";
 }
 
 nlohmann::ordered_json claims_json(const std::vector<JudgedClaim>& claims, const RenderOptions& options) {

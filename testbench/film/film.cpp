@@ -93,10 +93,21 @@ Film::UInt128 Film::to_fixed_point(double value, double units) {
   return (UInt128{static_cast<std::uint64_t>(high)} << 63) + static_cast<std::uint64_t>(low);
 }
 
+bool Film::fits(const glm::dvec3& radiance) const {
+  const auto in_range = [this](double value) {
+    return value >= 0.0 && value <= max_radiance_;  // false for NaN
+  };
+  return in_range(radiance.x) && in_range(radiance.y) && in_range(radiance.z);
+}
+
+void Film::add_to(Squares& squares, const glm::dvec3& radiance) const {
+  for (int channel = 0; channel < 3; ++channel)
+    squares.sum[channel] += to_fixed_point(radiance[channel] * radiance[channel], square_units_);
+}
+
 bool Film::add(int pixel_index, const glm::dvec3& radiance) {
   Sums& pixel = sums_.at(static_cast<std::size_t>(pixel_index));
-  const auto fits = [this](double value) { return value >= 0.0 && value <= max_radiance_; };  // false for NaN
-  if (!(fits(radiance.x) && fits(radiance.y) && fits(radiance.z)) || pixel.samples == kMaxSamples) {
+  if (!fits(radiance) || pixel.samples == kMaxSamples) {
     reject(radiance);
     return false;
   }
@@ -104,10 +115,31 @@ bool Film::add(int pixel_index, const glm::dvec3& radiance) {
     pixel.sum[channel] += to_fixed_point(radiance[channel], sum_units_);
   ++pixel.samples;
   if (!keeps_variances()) return true;
-  Squares& squares = squares_[static_cast<std::size_t>(pixel_index)];
-  for (int channel = 0; channel < 3; ++channel)
-    squares.sum[channel] += to_fixed_point(radiance[channel] * radiance[channel], square_units_);
+  add_to(squares_[static_cast<std::size_t>(pixel_index)], radiance);
   return true;
+}
+
+bool Film::add_splat(int pixel_index, const glm::dvec3& radiance) {
+  const auto place = static_cast<std::size_t>(pixel_index);
+  if (!fits(radiance)) {
+    reject(radiance);
+    return false;
+  }
+  take_splats();
+  Squares& pixel = splats_.at(place);
+  for (int channel = 0; channel < 3; ++channel)
+    pixel.sum[channel] += to_fixed_point(radiance[channel], sum_units_);
+  if (keeps_variances()) add_to(splat_squares_[place], radiance);
+  return true;
+}
+
+void Film::take_splats() {
+  if (has_splats()) return;
+  const std::size_t bytes = sums_.size() * sizeof(Squares) * (keeps_variances() ? 2 : 1);
+  require_memory(bytes, "the light that light paths bring to a film of " + std::to_string(size_.width) + "x" +
+                            std::to_string(size_.height) + " pixels");
+  allocate(splats_, sums_.size());
+  if (keeps_variances()) allocate(splat_squares_, sums_.size());
 }
 
 void Film::reject(const glm::dvec3& radiance) {
@@ -137,8 +169,14 @@ void Film::merge(const Film& other) {
     for (int channel = 0; channel < 3; ++channel) sums_[i].sum[channel] += other.sums_[i].sum[channel];
     sums_[i].samples += other.sums_[i].samples;
   }
-  for (std::size_t i = 0; i < squares_.size(); ++i)
-    for (int channel = 0; channel < 3; ++channel) squares_[i].sum[channel] += other.squares_[i].sum[channel];
+  if (other.has_splats()) take_splats();
+  const auto add_all = [](std::vector<Squares>& to, const std::vector<Squares>& from) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      for (int channel = 0; channel < 3; ++channel) to[i].sum[channel] += from[i].sum[channel];
+  };
+  add_all(squares_, other.squares_);
+  add_all(splats_, other.splats_);
+  add_all(splat_squares_, other.splat_squares_);
   rejected_.not_finite += other.rejected_.not_finite;
   rejected_.negative += other.rejected_.negative;
   rejected_.too_large += other.rejected_.too_large;
@@ -147,21 +185,26 @@ void Film::merge(const Film& other) {
 std::string Film::bytes() const {
   static_assert(std::is_trivially_copyable_v<RejectedSamples>);
   std::string result(byte_count(), '\0');
-  std::memcpy(put_bytes(squares_, put_bytes(sums_, result.data())), &rejected_, sizeof(rejected_));
+  char* const behind_samples = put_bytes(squares_, put_bytes(sums_, result.data()));
+  std::memcpy(put_bytes(splat_squares_, put_bytes(splats_, behind_samples)), &rejected_, sizeof(rejected_));
+  result.back() = has_splats();
   return result;
 }
 
 Film Film::from_bytes(FilmSize size, double scale, FilmSums sums, const std::string& bytes) {
   Film film(size, scale, sums);
+  if (!bytes.empty() && bytes.back() != 0) film.take_splats();
   if (bytes.size() != film.byte_count())
     throw std::invalid_argument("these bytes are not a film of that size and sums");
-  const char* const behind_pixels = get_bytes(film.squares_, get_bytes(film.sums_, bytes.data()));
+  const char* const behind_samples = get_bytes(film.squares_, get_bytes(film.sums_, bytes.data()));
+  const char* const behind_pixels = get_bytes(film.splat_squares_, get_bytes(film.splats_, behind_samples));
   std::memcpy(&film.rejected_, behind_pixels, sizeof(film.rejected_));
   return film;
 }
 
 std::size_t Film::byte_count() const {
-  return sums_.size() * sizeof(Sums) + squares_.size() * sizeof(Squares) + sizeof(rejected_);
+  return sums_.size() * sizeof(Sums) +
+         (squares_.size() + splats_.size() + splat_squares_.size()) * sizeof(Squares) + sizeof(rejected_) + 1;
 }
 
 glm::dvec3 Film::mean(int pixel_index) const {
@@ -169,8 +212,10 @@ glm::dvec3 Film::mean(int pixel_index) const {
   if (pixel.samples == 0) return glm::dvec3(0.0);
   glm::dvec3 result;
   for (int channel = 0; channel < 3; ++channel) {
-    const Float128 quotient =
-        static_cast<Float128>(pixel.sum[channel]) / static_cast<Float128>(pixel.samples);
+    auto sum = static_cast<Float128>(pixel.sum[channel]);
+    if (has_splats())
+      sum += static_cast<Float128>(splats_[static_cast<std::size_t>(pixel_index)].sum[channel]);
+    const Float128 quotient = sum / static_cast<Float128>(pixel.samples);
     result[channel] = from_float128(quotient, sum_quantum_exponent_);
   }
   return result;
@@ -193,6 +238,10 @@ glm::dvec3 Film::variance_of_mean(int pixel_index) const {
     const Float128 variance = deviation / (samples - 1) / samples;
     result[channel] = std::max(
         0.0, from_float128(variance, square_quantum_exponent_));  // truncated bits may make it negative
+    if (splat_squares_.empty()) continue;
+    const auto of_splats =
+        static_cast<Float128>(splat_squares_[static_cast<std::size_t>(pixel_index)].sum[channel]);
+    result[channel] += from_float128(of_splats / samples / samples, square_quantum_exponent_);
   }
   return result;
 }

@@ -51,6 +51,11 @@ class Film {
   /// (std::out_of_range).
   bool add(int pixel, const glm::dvec3& radiance);
 
+  /// Adds light that is no sample of the pixel's own: what a light path brings to it, over the number of
+  /// light paths for each sample of a pixel. It counts as if every sample of the pixel had brought its share.
+  /// Else as add().
+  bool add_splat(int pixel, const glm::dvec3& radiance);
+
   /// Prefetches the pixel for add(). A film is larger than the caches of the x86, and paths end in no order
   /// of pixels, so callers announce samples in advance. With prefetch(), both functions take 4 % of a render;
   /// without it, add() alone takes 6.5 %.
@@ -78,7 +83,8 @@ class Film {
   /// Mean radiance; 0 for a pixel without samples.
   glm::dvec3 mean(int pixel) const;
   bool keeps_variances() const { return !squares_.empty(); }
-  /// Unbiased estimate of the variance of mean(): sample variance / samples. 0 with fewer than two samples.
+  /// Unbiased estimate of the variance of mean(): sample variance / samples, and that of splats, of which
+  /// each is one of many rare events: the sum of their squares / samples^2. 0 with fewer than two samples.
   /// Throws std::logic_error if there are more and the film keeps no variances.
   glm::dvec3 variance_of_mean(int pixel) const;
 
@@ -112,8 +118,12 @@ class Film {
   }
   static UInt128 to_fixed_point(double value, double units);
   const Sums& at(int pixel) const { return sums_.at(static_cast<std::size_t>(pixel)); }
+  bool has_splats() const { return !splats_.empty(); }
+  bool fits(const glm::dvec3& radiance) const;
+  void add_to(Squares& squares, const glm::dvec3& radiance) const;
+  void take_splats();
   void reject(const glm::dvec3& radiance);
-  std::size_t byte_count() const;  ///< of bytes()
+  std::size_t byte_count() const;  ///< of bytes(): all sums, what was rejected, and whether there are splats
 
   FilmSize size_;
   double scale_;
@@ -124,6 +134,9 @@ class Film {
   double square_units_;          ///< 2^-63 / (unit of Squares::sum)
   std::vector<Sums> sums_;
   std::vector<Squares> squares_;  ///< empty if no variances are kept
+  // Of splats; empty until there is one.
+  std::vector<Squares> splats_;         ///< sums in the unit of Sums::sum
+  std::vector<Squares> splat_squares_;  ///< empty if no variances are kept
   RejectedSamples rejected_;
 };
 

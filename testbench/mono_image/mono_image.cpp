@@ -22,6 +22,7 @@
 #include "testbench/mono_image/to_record.hpp"
 #include "testbench/scene/film_ray.hpp"
 #include "testbench/scene/normalise.hpp"
+#include "testbench/system/error.hpp"
 
 namespace testbench {
 namespace {
@@ -50,9 +51,30 @@ Box padded_box(const path_tracer::TriangleShape& shape, double reach) {
   return {{box.lower.x, box.lower.y, box.lower.z}, {box.upper.x, box.upper.y, box.upper.z}};
 }
 
-/// A bound for the distance between any two points of camera and triangles, where all rays start.
-double reach_of(const Scene& scene) {
+/// A sphere around the scene's triangles.
+struct Surround {
+  glm::dvec3 centre;
+  double radius;
+};
+Surround surround_of(const Scene& scene) {
   Box all;
+  for (const Triangle& triangle : scene.triangles) all.include(bounds_of(triangle));
+  constexpr double kRoom = 1.0 + 0x1p-20;  // for rounding
+  return {0.5 * (all.lower + all.upper), kRoom * 0.5 * glm::length(all.upper - all.lower)};
+}
+
+/// A bound for the distance between any two points where rays start: camera and triangles, and where light
+/// paths begin.
+double reach_of(const Scene& scene, bool has_light_paths) {
+  Box all;
+  if (has_light_paths) {
+    for (const Light& light : scene.lights)
+      if (light.kind == LightKind::point || light.kind == LightKind::spot) all.include(light.position);
+    const Surround surround = surround_of(scene);
+    const glm::dvec3 disk(std::sqrt(2.0) * surround.radius);  // its edge, where light from far away begins
+    all.include(surround.centre - disk);
+    all.include(surround.centre + disk);
+  }
   for (const int x : {0, scene.film.width})
     for (const int y : {0, scene.film.height}) all.include(film_ray(scene, x, y).origin);
   for (const Triangle& triangle : scene.triangles) all.include(bounds_of(triangle));
@@ -260,6 +282,21 @@ void put_shading_kinds(MonoImage& image, const Scene& scene, const std::vector<M
              path_tracer::ShadingKindRecord{kinds[std::size_t(scene.triangles[i].material)]});
 }
 
+/// What light paths need of the scene besides its lights.
+void put_light_paths(MonoImage& image, const Triangles& triangles, const std::vector<Material>& materials,
+                     const Lights& lights) {
+  const Surround surround = surround_of(triangles.scene);
+  image.layout.centre = to_record(surround.centre);
+  image.layout.radius = surround.radius;
+  for (std::size_t light = 0; light < lights.records.size(); ++light) {
+    const std::vector<std::size_t>& of_light = lights.triangles[light];
+    if (of_light.empty()) continue;
+    const std::int32_t material = triangles.scene.triangles[of_light.front()].material;
+    const path_tracer::LightEmissionRecord emission{to_record(materials[std::size_t(material)].emission)};
+    put(image, image.layout.light_emission + light, &emission, 1);
+  }
+}
+
 /// Texels of the environment's image, and suns.
 void put_outside(MonoImage& image, const Environment& environment, const Lights& lights) {
   put(image, image.layout.suns, lights.suns.data(), lights.suns.size());
@@ -274,6 +311,24 @@ void put_outside(MonoImage& image, const Environment& environment, const Lights&
       lights.environment_texels.data(), lights.environment_texels.size());
 }
 
+/// Refuses what bidirectional paths do not render.
+void require_bidirectional_scene(const Scene& scene, const path_tracer::Features& features) {
+  const auto refuse = [&](const std::string& found, const std::string& allowed) {
+    throw InputError(scene.name + ": paths bidirectional: found " + found + "; allowed " + allowed +
+                     ", or paths unidirectional");
+  };
+  if (features.coverage)
+    refuse("a surface that lets rays through by its alpha", "are alpha 1 and alphaMode OPAQUE");
+  if (features.textures.has(path_tracer::TextureSlot::emission))
+    refuse("a texture of emission", "is emission of one colour");
+  const bool has_disk = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+    return light.kind == LightKind::sun && light.angular_diameter_radians > 0.0;
+  });
+  if (has_disk && (features.lobes.smooth_specular() || features.lobes.coat))
+    refuse("a sun with a disk beside mirrors, clear glass or a clear coat",
+           "is a sun of angular_diameter_degrees 0");
+}
+
 }  // namespace
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options,
@@ -281,9 +336,10 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   const ShownMaterials shown = shown_materials(scene, options);
   path_tracer::ProgramConfig config = options;
   config.features = features_of(scene, shown.materials, options);
+  if (config.is_bidirectional()) require_bidirectional_scene(scene, config.features);
   const Triangles triangles(scene);
   const Lights lights = make_lights(scene, triangles.faces, config.light_sampling, survey);
-  const double reach = reach_of(scene);
+  const double reach = reach_of(scene, config.is_bidirectional());
   TreeImage tree;
   if (config.uses_tree()) tree = make_tree(triangles, reach, config);
 
@@ -319,6 +375,7 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
     put(image, image.layout.light_candidates, lights.candidates.data(), lights.candidates.size());
   put(image, image.layout.light_cdf, lights.cdf.data(), lights.cdf.size());
   put_outside(image, scene.environment, lights);
+  if (config.is_bidirectional()) put_light_paths(image, triangles, shown.materials, lights);
   put(image, image.layout.light_classes, lights.classes.data(), lights.classes.size());
   if (config.uses_tree())
     std::memcpy(image.bytes.data() + image.layout.nodes.address, tree.nodes.data(), tree.nodes.size());

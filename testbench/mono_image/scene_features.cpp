@@ -115,10 +115,10 @@ path_tracer::Features features_of(const Scene& scene, const std::vector<Material
   features.environment = scene.environment.is_lit() && !scene.environment.image;
   path_tracer::kBuiltForTable.at(std::size_t(config.built_for)).add(features);
   const bool has_shared = features.lobes.evaluable() && !features.lobes.only_diffuse();
-  features.multiple_importance = config.program != path_tracer::Program::segments &&
-                                 features.lights.can_be_hit() &&
-                                 (config.estimator == path_tracer::Estimator::mis ||
-                                  (config.estimator == path_tracer::Estimator::per_lobe && has_shared));
+  features.multiple_importance =
+      config.program != path_tracer::Program::segments && features.lights.can_be_hit() &&
+      (config.is_bidirectional() || config.estimator == path_tracer::Estimator::mis ||
+       (config.estimator == path_tracer::Estimator::per_lobe && has_shared));
   if (config.bins_hits()) {
     const std::vector<std::int32_t> kinds = shading_kinds(scene, materials, config.shading);
     features.shading_kinds = 1 + *std::max_element(kinds.begin(), kinds.end());
@@ -142,6 +142,10 @@ int suited_light_candidates(const Scene& scene) {
         return light.kind == LightKind::point || light.kind == LightKind::spot;
       }));
   return (emitting + 1) / 2 + near < kFewLights ? 1 : path_tracer::kMaxLightCandidates;
+}
+
+int suited_light_candidates(const Scene& scene, const path_tracer::ProgramConfig& program) {
+  return program.is_bidirectional() ? 1 : suited_light_candidates(scene);
 }
 
 path_tracer::Estimator suited_estimator(const Scene& scene, int light_candidates) {

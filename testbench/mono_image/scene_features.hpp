@@ -20,6 +20,8 @@ path_tracer::ProgramConfig built_for(const Scene& scene, path_tracer::ProgramCon
 /// How many candidates pay (ProgramConfig::light_candidates), by the number of lights within the scene; two
 /// triangles count as one.
 int suited_light_candidates(const Scene& scene);
+/// The same for a program, which may have no choice: bidirectional paths take one.
+int suited_light_candidates(const Scene& scene, const path_tracer::ProgramConfig& program);
 
 /// Which estimator pays. Shadow rays find the sky by its radiance, hits by the cosine as well: where a vertex
 /// takes its light by one candidate, both together have up to half the error on diffuse surfaces, too.

@@ -57,6 +57,7 @@ class ClaimRunList {
     add_widths();
     add_traversals();
     add_stream_processor();
+    add_bidirectional();
     return std::move(runs_);
   }
 
@@ -139,6 +140,12 @@ class ClaimRunList {
     RenderOptions options = of_program(Program::segments);
     options.program.execution = path_tracer::Execution::stream;
     add("stream", scenes_.box, options);
+  }
+  void add_bidirectional() {
+    RenderOptions options = of_program(Program::full);
+    options.program.paths = path_tracer::Paths::bidirectional;
+    options.program.cull_shadow_rays = true;
+    add("bidirectional", scenes_.box, options);
   }
 
   RenderOptions of_program(Program program) const {

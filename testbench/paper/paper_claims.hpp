@@ -7,12 +7,7 @@
 
 namespace testbench {
 
-enum class Verdict : std::uint8_t {
-  holds,
-  partly,
-  fails,
-  not_modelled,  ///< the model has nothing that could show it
-};
+enum class Verdict : std::uint8_t { holds, partly, fails };
 const char* name_of(Verdict verdict);
 
 /// What the measurements say of a claim.

@@ -1,6 +1,6 @@
 #include "testbench/run/host_pc.hpp"
 
-#include "firmware/path_tracer/path_tracer.hpp"
+#include "firmware/path_tracer/pipeline/results_handover.hpp"
 #include "model/transaction/payload.hpp"
 
 namespace testbench {

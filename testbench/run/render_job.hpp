@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 
-#include "firmware/path_tracer/path_tracer.hpp"
+#include "firmware/path_tracer/make_tracer.hpp"
 #include "model/hazards/hazard_checker.hpp"
 #include "testbench/machine/memory_overflow.hpp"
 #include "testbench/run/render.hpp"
@@ -85,8 +86,10 @@ class RenderJob {
         checker_ ? path_tracer::observed_kernels() : path_tracer::kernels(options_.level);
     path_tracer::Work work = options_.work;
     work.listed_samples = image_.camera_samples.size();
-    result_.counts =
-        path_tracer::trace_paths(machine, kernels, options_.program, image_.layout, work, std::ref(relay_));
+    const std::unique_ptr<path_tracer::Tracer> tracer =
+        path_tracer::make_tracer(machine, kernels, options_.program, image_.layout, work);
+    tracer->run(std::ref(relay_));
+    result_.counts = tracer->counts();
     if (checker_ && !relay_.interrupted()) checker_->firmware_ends();
   }
 

@@ -14,7 +14,12 @@ void ResultReader::fetch(const Read& read) {
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const path_tracer::RadianceRecord& record = records_[i];
     if (i + kAhead < records_.size()) film_.prefetch(records_[i + kAhead].pixel);
-    if (record.pixel >= 0) film_.add(record.pixel, {record.radiance.x, record.radiance.y, record.radiance.z});
+    if (record.pixel < 0) continue;
+    const glm::dvec3 radiance(record.radiance.x, record.radiance.y, record.radiance.z);
+    if (record.sample == path_tracer::kSplatSample)
+      film_.add_splat(record.pixel, radiance);
+    else
+      film_.add(record.pixel, radiance);
   }
   half_ = 1 - half_;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware/path_tracer/kernels/kernels.hpp"
-#include "firmware/path_tracer/path_tracer.hpp"
+#include "firmware/path_tracer/make_tracer.hpp"
 #include "firmware/path_tracer/traversals/ray_unit_search.hpp"
 #include "model/config/address_map.hpp"
 #include "testbench/machine/native_machine.hpp"
@@ -82,7 +82,7 @@ int bytes_left(const ProgramConfig& program, const model::ChipConfig& chip, bool
   const path_tracer::Layout layout = path_tracer::make_layout({0, 0, 1, has_layers}, chip.chip.pes, least);
   constexpr int kPlenty = 1 << 18;
   NativeMachine machine(chip.chip.pes, kPlenty, layout.total_bytes, {}, model::search_unit_range(chip));
-  const path_tracer::PathTracer sizes(machine, path_tracer::kernels(cn::widest_level()), least, layout, {});
+  path_tracer::make_tracer(machine, path_tracer::kernels(cn::widest_level()), least, layout, {});
   return chip.poly.sram_bytes - cn::PolyMemory::kReservedBytes - machine.poly_memory().used_bytes();
 } catch (const cn::PolyMemoryOverflow&) {
   return -1;  // beyond any SRAM

@@ -50,6 +50,16 @@ Json paths_alive(const RunCounts& counts) {
   return json;
 }
 
+/// Empty of a run without light paths.
+Json bidirectional_rays(const RunCounts& counts) {
+  const path_tracer::ConnectionCounts& of = counts.connections;
+  if (of.light_segments + of.all() == 0) return Json::object();
+  return {{"light_segments", of.light_segments},
+          {"to_lens", of.to_lens},
+          {"to_lights", of.to_lights},
+          {"to_light_vertices", of.to_light_vertices}};
+}
+
 /// An object with what `read` says of each lobe that a kernel has issued.
 template <class Read>
 Json by_lobe(const RunCounts& counts, const Read& read) {
@@ -155,6 +165,11 @@ const Counters<RunCounts>& firmware_counters() {
        [](const RunCounts& c) {
          return by_lobe(c, [](const LobeCount& of) { return of.simd_efficiency(); });
        }},
+      {{"bidirectional.*", "count",
+        "of bidirectional paths: segments of light paths, and the shadow rays of connections from light "
+        "paths "
+        "to the lens, from eye paths to points of lights and to vertices of light paths"},
+       bidirectional_rays},
       {{"traversal.leaf_loads", "count", "leaves that a ray loaded, with a tree"},
        [](const RunCounts& c) { return Json(c.traversal.leaf_loads); }},
       {{"traversal.treelet_loads", "count", "treelets that a ray loaded"},

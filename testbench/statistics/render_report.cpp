@@ -155,6 +155,20 @@ void add_traversal_row(const RenderRequest& request, const RenderResult& result,
   rows.emplace_back("traversal", row);
 }
 
+void add_connections_row(const path_tracer::RunCounts& counts, Rows& rows) {
+  const path_tracer::ConnectionCounts& of = counts.connections;
+  if (of.light_segments + of.all() == 0) return;
+  const auto paths = double(counts.paths);
+  rows.emplace_back("bidirectional",
+                    text("%.2f light segments", double(of.light_segments) / paths) +
+                        text(" and %.2f connections a path", double(of.all()) / paths) +
+                        text(" (%.2f to the lens", double(of.to_lens) / paths) +
+                        text(", %.2f to lights", double(of.to_lights) / paths) +
+                        text(", %.2f to light vertices)", double(of.to_light_vertices) / paths) +
+                        text(", %.0f %% of the rays",
+                             100 * double(of.all()) / double(counts.segments + counts.shadow_rays)));
+}
+
 }  // namespace
 
 Json render_statistics(const RenderRequest& request, const RenderResult& result) {
@@ -193,6 +207,7 @@ std::string render_table(const RenderRequest& request, const RenderResult& resul
                                          text(" of %.0f paths", double(counts.paths)) +
                                          text(", %.0f shadow rays", double(counts.shadow_rays)));
   add_traversal_row(request, result, rows);
+  add_connections_row(counts, rows);
   add_skips_row(result, rows);
   add_lobes_row(counts, rows);
   if (result.chip) add_chip_rows(result, rows);

@@ -240,6 +240,53 @@ TEST(Film, of_means_alone_has_the_same_means) {
   EXPECT_EQ(once.variance_of_mean(0), glm::dvec3(0.0));
 }
 
+TEST(Film, splats_are_light_of_the_pixel_but_no_samples) {
+  Film film({2, 1}, 1.0);
+  ASSERT_TRUE(film.add_splat(0, {0.25, 0.5, 1.0}));  // before there is a sample
+  EXPECT_EQ(film.mean(0), glm::dvec3(0.0));
+  for (const double value : {1.0, 2.0, 3.0, 2.0}) ASSERT_TRUE(film.add(0, glm::dvec3(value)));
+  const glm::dvec3 without = [] {
+    Film samples({1, 1}, 1.0);
+    for (const double value : {1.0, 2.0, 3.0, 2.0}) samples.add(0, glm::dvec3(value));
+    return samples.variance_of_mean(0);
+  }();
+  ASSERT_TRUE(film.add_splat(0, {0.75, 0.5, 1.0}));
+  EXPECT_EQ(film.sample_count(0), 4u);
+  EXPECT_EQ(film.sample_count(1), 0u);
+  EXPECT_EQ(film.mean(0), glm::dvec3(2.25, 2.25, 2.5));
+  const glm::dvec3 of_splats = glm::dvec3(0.0625 + 0.5625, 0.5, 2.0) / 16.0;
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(film.variance_of_mean(0)[channel] - without[channel], of_splats[channel], 1e-15);
+  EXPECT_FALSE(film.add_splat(1, {-1.0, 0.0, 0.0}));
+  EXPECT_FALSE(film.add_splat(1, {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}));
+  EXPECT_EQ(film.rejected_samples(), 2u);
+  EXPECT_THROW(film.add_splat(2, glm::dvec3(1.0)), std::out_of_range);
+}
+
+TEST(Film, splats_do_not_depend_on_their_order_and_are_merged_and_sent) {
+  for (const FilmSums sums : {FilmSums::means, FilmSums::means_and_variances}) {
+    std::vector<Sample> splats = wild_samples(6, 1000);
+    Film forward({3, 2}, 16.0, sums);
+    Film with_samples({3, 2}, 16.0, sums);
+    Film backward({3, 2}, 16.0, sums);
+    for (int pixel = 0; pixel < 6; ++pixel) {
+      forward.add(pixel, glm::dvec3(0.5));
+      with_samples.add(pixel, glm::dvec3(0.5));
+    }
+    for (const Sample& s : splats) ASSERT_TRUE(forward.add_splat(s.pixel, s.radiance));
+    std::reverse(splats.begin(), splats.end());
+    for (const Sample& s : splats) ASSERT_TRUE(backward.add_splat(s.pixel, s.radiance));
+    with_samples.merge(backward);
+    EXPECT_EQ(with_samples.sha256(), forward.sha256());
+    const Film sent = Film::from_bytes({3, 2}, 16.0, sums, forward.bytes());
+    EXPECT_EQ(sent.sha256(), forward.sha256());
+    EXPECT_EQ(sent.bytes(), forward.bytes());
+    Film none({3, 2}, 16.0, sums);
+    EXPECT_NE(none.bytes().size(), forward.bytes().size());
+    EXPECT_THROW(Film::from_bytes({3, 2}, 16.0, sums, forward.bytes().substr(1)), std::invalid_argument);
+  }
+}
+
 TEST(FilmScale, is_the_power_of_two_at_or_above_the_largest_emission) {
   const auto scale_of = [](double emission) {
     testbench::Scene scene;

@@ -23,6 +23,7 @@ const LargePacketKernels& large_packet_kernel_table();
 const RayStreamKernels& ray_stream_kernel_table();
 const StreamKernels& stream_kernel_table();
 const ResidentKernels& resident_kernel_table();
+const PairKernels& pair_kernel_table();
 cn::Kernel<IntersectArguments> tree_search_kernel();
 }  // namespace CN_LEVEL
 
@@ -402,6 +403,7 @@ const Kernels& kernel_table() {
       ray_stream_kernel_table,
       stream_kernel_table,
       resident_kernel_table,
+      pair_kernel_table,
   };
   return table;
 }

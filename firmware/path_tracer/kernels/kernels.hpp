@@ -253,6 +253,7 @@ struct LargePacketKernels;
 struct RayStreamKernels;
 struct StreamKernels;
 struct ResidentKernels;
+struct PairKernels;
 
 struct Kernels {
   cn::Kernel<IntersectArguments> intersect;
@@ -280,6 +281,7 @@ struct Kernels {
   const RayStreamKernels& (*ray_stream)();
   const StreamKernels& (*stream)();
   const ResidentKernels& (*resident)();
+  const PairKernels& (*pair)();  ///< of bidirectional paths
 };
 
 const Kernels& kernels(Level level);

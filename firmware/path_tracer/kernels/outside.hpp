@@ -22,10 +22,8 @@ inline poly<double> along_axis(const Direction3& direction, const vec3<double>& 
   return direction.x * axis.x + direction.y * axis.y + direction.z * axis.z;
 }
 
-/// Finds the texel that a ray sees which hit nothing.
-inline void look_up_environment(const EnvironmentLookUpArguments& arguments) {
-  const EnvironmentImage& image = arguments.image;
-  const Direction3 direction = tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction);
+/// Where the texel of a direction is.
+inline poly<MonoAddress> place_in_image(const EnvironmentImage& image, const Direction3& direction) {
   const poly<double> x = along_axis(direction, image.x_axis);
   const poly<double> y = along_axis(direction, image.y_axis);
   const poly<double> z = along_axis(direction, image.z_axis);
@@ -38,8 +36,14 @@ inline void look_up_environment(const EnvironmentLookUpArguments& arguments) {
   };
   const poly<std::int32_t> column = texel(longitude * (0.5 / kPi) + 0.5, image.width);
   const poly<std::int32_t> row = texel(colatitude * (1.0 / kPi), image.height);
-  arguments.look_up.set(&EnvironmentLookUp::place,
-                        place_of(image.texels, row * image.width + column, sizeof(EnvironmentTexel)));
+  return place_of(image.texels, row * image.width + column, sizeof(EnvironmentTexel));
+}
+
+/// Finds the texel that a ray sees which hit nothing.
+inline void look_up_environment(const EnvironmentLookUpArguments& arguments) {
+  arguments.look_up.set(
+      &EnvironmentLookUp::place,
+      place_in_image(arguments.image, tail<ArrivalRecord>(arguments.hit).get(&ArrivalRecord::direction)));
 }
 
 inline Rgb radiance_of(const PolyPointer<EnvironmentTexel>& texel) {

@@ -60,6 +60,38 @@ std::uint64_t slots_of(int num_pes, const ProgramConfig& config) {
   return std::uint64_t(num_pes) * std::uint64_t(config.bin_blocks);
 }
 
+/// Bins of scattered paths, of the light that their shadow rays find, and of paths.
+void take_path_bins(Layout& layout, MonoAllocator& memory, std::uint64_t slots, const ProgramConfig& config) {
+  layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
+  layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots, layout.sizes.lighting);
+  layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);
+  layout.path_bin = memory.take<PathRecord>("path bin", slots, layout.sizes.path);
+  if (config.bins_hits()) {
+    layout.binned_hits =
+        memory.take<BinnedHit>("binned hits", slots * std::uint64_t(hit_kinds(config.features)));
+    layout.casts_bin = memory.take<cn::MonoAddress>("casts bin", slots);
+  }
+  if (config.is_stream()) {
+    layout.slot_states = memory.take<SlotState>("slot states", slots);
+    layout.finished_bin = memory.take<FinishedRecord>("finished bin", slots);
+    layout.path_numbers =
+        memory.take<std::uint64_t>("path numbers", ScanLevels(std::int32_t(slots)).all_words);
+  }
+  layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
+  layout.folds = memory.take<FoldRecord>("folds", slots);
+  layout.finished = memory.take<FinishedRecord>("finished paths", slots);
+}
+
+/// The path bin of bidirectional paths: a pair of paths in each slot.
+void take_pair_bins(Layout& layout, MonoAllocator& memory, std::uint64_t slots, const ProgramConfig& config) {
+  const PairSizes sizes(config.features, config.light_vertices);
+  layout.pair_bin = memory.take<PairRecord>("pair bin", slots, sizes.pair);
+  layout.path_vertices = memory.take<PathVertexRecord>(
+      "path vertices", slots * std::uint64_t(config.light_vertices + 1), sizes.vertex);
+  layout.light_heads =
+      memory.take<LightHeadRecord>("light heads", slots * std::uint64_t(config.light_vertices));
+}
+
 /// Takes what paths need on their way round the circular buffer.
 void take_bins(Layout& layout, MonoAllocator& memory, const SceneCounts& scene, int num_pes,
                const ProgramConfig& config) {
@@ -82,24 +114,10 @@ void take_bins(Layout& layout, MonoAllocator& memory, const SceneCounts& scene, 
     layout.intersection_bin = memory.take<HitRecord>("intersection bin", slots, layout.sizes.hit);
   if (config.walks_tree())
     layout.surface_place_bin = memory.take<cn::MonoAddress>("surface place bin", slots);
-  layout.scatter_bin = memory.take<ScatterRecord>("scatter bin", slots, layout.sizes.scatter);
-  layout.lighting_bin = memory.take<LightingRecord>("lighting bin", slots, layout.sizes.lighting);
-  layout.direct_light_bin = memory.take<DirectLightRecord>("direct light bin", slots);
-  layout.path_bin = memory.take<PathRecord>("path bin", slots, layout.sizes.path);
-  if (config.bins_hits()) {
-    layout.binned_hits =
-        memory.take<BinnedHit>("binned hits", slots * std::uint64_t(hit_kinds(config.features)));
-    layout.casts_bin = memory.take<cn::MonoAddress>("casts bin", slots);
-  }
-  if (config.is_stream()) {
-    layout.slot_states = memory.take<SlotState>("slot states", slots);
-    layout.finished_bin = memory.take<FinishedRecord>("finished bin", slots);
-    layout.path_numbers =
-        memory.take<std::uint64_t>("path numbers", ScanLevels(std::int32_t(slots)).all_words);
-  }
-  layout.vertices = memory.take<VertexRecord>("vertices", slots * std::uint64_t(config.slot_vertices));
-  layout.folds = memory.take<FoldRecord>("folds", slots);
-  layout.finished = memory.take<FinishedRecord>("finished paths", slots);
+  if (config.is_bidirectional())
+    take_pair_bins(layout, memory, slots, config);
+  else
+    take_path_bins(layout, memory, slots, config);
 }
 
 }  // namespace
@@ -133,6 +151,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
     layout.light_classes = memory.take<LightClass>("light classes", std::uint64_t(scene.light_classes));
   if (config.resamples_lights())
     layout.light_candidates = memory.take<LightCandidate>("light candidates", std::uint64_t(scene.lights));
+  if (config.is_bidirectional())
+    layout.light_emission = memory.take<LightEmissionRecord>("light emission", std::uint64_t(scene.lights));
   if (config.uses_tree())
     layout.nodes = memory.take<std::uint64_t>(
         "nodes", std::uint64_t(scene.tree_slots) * std::uint64_t(tree.layout.node_bytes()) / 8);
@@ -160,8 +180,9 @@ void place_bins(Layout& layout, cn::MonoAddress first) {
   move(layout.ray_bin, layout.ray_queue, layout.traversal_bin, layout.treelet_pool, layout.intersection_bin,
        layout.surface_place_bin, layout.scatter_bin, layout.lighting_bin, layout.direct_light_bin,
        layout.path_bin, layout.binned_hits, layout.casts_bin, layout.slot_states, layout.finished_bin,
-       layout.path_numbers, layout.vertices, layout.folds, layout.finished, layout.results_header[0],
-       layout.results_header[1], layout.results[0], layout.results[1]);
+       layout.path_numbers, layout.vertices, layout.folds, layout.finished, layout.pair_bin,
+       layout.path_vertices, layout.light_heads, layout.results_header[0], layout.results_header[1],
+       layout.results[0], layout.results[1]);
   for (Layout::Region& region : layout.regions)
     if (region.first >= layout.scene_bytes) region.first += distance;
   layout.total_bytes += distance;

@@ -5,6 +5,7 @@
 
 #include "firmware/cn/chip/mono_memory.hpp"
 #include "firmware/path_tracer/program/program_config.hpp"
+#include "firmware/path_tracer/records/pair_records.hpp"
 #include "firmware/path_tracer/records/slot_state.hpp"
 #include "firmware/path_tracer/records/tails.hpp"
 
@@ -50,6 +51,10 @@ struct Layout {
   int sun_count = 0;
   double reach = 0;  ///< no ray starts farther from a vertex (triangle_record.hpp)
   Layers layers;
+  // Of bidirectional paths: what lights emit, and a sphere around the scene.
+  cn::MonoPointer<LightEmissionRecord> light_emission;
+  vec3<double> centre{};
+  double radius = 0;
 
   // Bins: one record for each slot, slot_vertices for `vertices`.
   cn::MonoPointer<RayRecord> ray_bin;    ///< of brute force
@@ -72,6 +77,10 @@ struct Layout {
   cn::MonoPointer<VertexRecord> vertices;
   cn::MonoPointer<FoldRecord> folds;
   cn::MonoPointer<FinishedRecord> finished;
+  // Bins of bidirectional paths, in place of the path bin and those behind it (PairSizes).
+  cn::MonoPointer<PairRecord> pair_bin;
+  cn::MonoPointer<PathVertexRecord> path_vertices;  ///< light_vertices + 1 for each slot
+  cn::MonoPointer<LightHeadRecord> light_heads;     ///< light_vertices for each slot
 
   // The host reads the results. It reads one half while the firmware fills the other.
   cn::MonoPointer<ResultsHeader> results_header[2];

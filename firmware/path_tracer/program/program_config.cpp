@@ -22,8 +22,23 @@ void require_what_resident_paths_allow(const ProgramConfig& config) {
   require_value("traversal", name_of(Traversal::brute_force));
   require_value("scratchpad", name_of(Scratchpad::none));
   require_value("execution", name_of(Execution::mtap));
+  require_value("paths", name_of(Paths::unidirectional));
   require_value("light_candidates", "1");
   require(!config.bins_hits(), "shading", name_of(config.shading), "every_lobe or present_lobes" + with);
+}
+
+/// What bidirectional paths leave no choice of.
+void require_bidirectional(const ProgramConfig& config) {
+  const auto with_these = [](const char* allowed) {
+    return std::string(allowed) + " with paths bidirectional";
+  };
+  require(config.program == Program::full, "program", name_of(config.program), with_these("full"));
+  require(!config.bins_hits(), "shading", name_of(config.shading), with_these("every_lobe or present_lobes"));
+  require(config.light_candidates == 1, "light_candidates", std::to_string(config.light_candidates),
+          with_these("1"));
+  require(config.skips_empty_blocks, "empty_blocks", "process", with_these("skip"));
+  require(config.cull_shadow_rays, "shadow_rays", "all", with_these("facing"));
+  require(!config.is_stream(), "execution", name_of(config.execution), with_these(name_of(Execution::mtap)));
 }
 
 }  // namespace
@@ -44,6 +59,7 @@ void validate(const ProgramConfig& config) {
   require(!config.is_stream() || !config.bins_hits(), "shading", name_of(config.shading),
           "every_lobe or present_lobes with execution stream, which sorts no hits");
   if (config.keeps_paths_in_sram()) require_what_resident_paths_allow(config);
+  if (config.is_bidirectional()) require_bidirectional(config);
   const NodeLayout& layout = config.tree.layout;
   require(!config.uses_tree() || layout.has_kernel(), "node_width", std::to_string(layout.width),
           "4 or 8 with node_format quantised8");

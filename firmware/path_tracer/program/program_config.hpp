@@ -17,6 +17,12 @@ enum class Program : std::uint8_t {
   full,      ///< plus the radiance of finished paths
 };
 
+/// Where paths begin.
+enum class Paths : std::uint8_t {
+  unidirectional,  ///< at the lens
+  bidirectional,   ///< at the lens and at a light; vertices of both are joined (paper, section 5)
+};
+
 /// Where random numbers come from.
 enum class Sampler : std::uint8_t {
   philox,  ///< independent
@@ -83,6 +89,7 @@ inline constexpr int kMaxResidentPaths = 4;  ///< as many as a vector instructio
 inline constexpr int kResidentResults = 8;   ///< that a PE collects until they are copied to mono memory
 inline constexpr int kMaxLightCandidates = 8;
 inline constexpr int kMaxPacketBlocks = 16;
+inline constexpr int kMaxLightVertices = 16;
 
 /// Limits far beyond what fits the chip; they keep slot numbers within 32 bits.
 inline constexpr int kMaxBinBlocks = 65536;
@@ -96,7 +103,9 @@ struct ProgramConfig {
   Features features;  ///< of the scene; PathTracer takes them from the layout
   Program program = Program::full;
   Execution execution = Execution::mtap;
-  int n = 1;  ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
+  Paths paths = Paths::unidirectional;
+  int light_vertices = 4;  ///< of a light path that a slot keeps, at most; of bidirectional paths
+  int n = 1;               ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;
   int bin_blocks = 8;      ///< length of each bin in blocks of one SIMD width
@@ -125,6 +134,7 @@ struct ProgramConfig {
   int packet_blocks = 8;  ///< blocks of rays in a large packet or a ray stream
   TreeShape tree;
 
+  bool is_bidirectional() const { return paths == Paths::bidirectional; }
   bool uses_tree() const { return traversal != Traversal::brute_force; }
   bool is_stream() const { return execution == Execution::stream; }
   /// Whether the control unit traverses the tree, so that PEs load none of it.

@@ -185,6 +185,12 @@ Options bins() {
 // The defaults give the least error for the time (`csx600 bench error`, Cornell box).
 Options sampling() {
   return {
+      choice<&ProgramConfig::paths>(
+          "paths", Paths::unidirectional, kPathsNames,
+          "paths from the lens alone, or from the lens and from a light, whose vertices are joined"),
+      integer<&ProgramConfig::light_vertices>(
+          "light_vertices", "vertices", 4, {1, kMaxLightVertices},
+          "vertices of a light path that a slot of bidirectional paths keeps; it ends there"),
       choice<&ProgramConfig::sampler>(
           "sampler", Sampler::sobol, kSamplerNames,
           "random numbers: philox (independent) or sobol (Owen-scrambled: a pixel's are stratified)"),

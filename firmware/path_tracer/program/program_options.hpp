@@ -17,6 +17,7 @@ namespace path_tracer {
 /// Names of the enumerations' values, in the order of the values.
 inline constexpr std::array kProgramNames = {"segments", "direct", "full"};
 inline constexpr std::array kExecutionNames = {"mtap", "stream"};
+inline constexpr std::array kPathsNames = {"unidirectional", "bidirectional"};
 inline constexpr std::array kSamplerNames = {"philox", "sobol"};
 inline constexpr std::array kLightSamplingNames = {"area", "solid_angle"};
 inline constexpr std::array kEstimatorNames = {"light", "mis", "per_lobe"};
@@ -32,6 +33,9 @@ inline const char* name_of(Program program) {
 }
 inline const char* name_of(Execution execution) {
   return kExecutionNames.at(std::size_t(execution));
+}
+inline const char* name_of(Paths paths) {
+  return kPathsNames.at(std::size_t(paths));
 }
 inline const char* name_of(Sampler sampler) {
   return kSamplerNames.at(std::size_t(sampler));

@@ -54,6 +54,10 @@ void RunCounts::merge(const RunCounts& other) {
   add_by_place(paths_by_segments, other.paths_by_segments);
   rays.merge(other.rays);
   traversal.merge(other.traversal);
+  connections.light_segments += other.connections.light_segments;
+  connections.to_lens += other.connections.to_lens;
+  connections.to_lights += other.connections.to_lights;
+  connections.to_light_vertices += other.connections.to_light_vertices;
 }
 
 }  // namespace path_tracer

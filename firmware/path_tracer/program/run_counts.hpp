@@ -52,6 +52,16 @@ struct LobeCount {
   double simd_efficiency() const { return double(wanted_lanes) / double(issued_lanes); }
 };
 
+/// Rays of bidirectional paths. Connections are shadow rays too.
+struct ConnectionCounts {
+  std::uint64_t light_segments = 0;  ///< segments of light paths
+  std::uint64_t to_lens = 0;         ///< connections from vertices of light paths to the lens
+  std::uint64_t to_lights = 0;       ///< from vertices of eye paths to points of lights
+  std::uint64_t to_light_vertices = 0;
+
+  std::uint64_t all() const { return to_lens + to_lights + to_light_vertices; }
+};
+
 /// Counts of the firmware; the chip has its own.
 struct RunCounts {
   std::uint64_t paths = 0;
@@ -66,6 +76,7 @@ struct RunCounts {
   PassCounts rays;                               ///< segments and shadow rays by pass
   std::vector<LobeCount> lobes;                  ///< [i]: of lobe i of kLobeTable; empty in plain scenes
   TraversalCounts traversal;
+  ConnectionCounts connections;
 
   /// Adds the counts of a run beside this one, on another array or chip.
   void merge(const RunCounts& other);

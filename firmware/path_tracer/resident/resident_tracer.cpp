@@ -8,9 +8,6 @@
 namespace path_tracer {
 namespace {
 
-/// Where compiled Cn keeps its locals (path_tracer.cpp).
-constexpr int kResidentStackBytes = 1024;
-
 /// Instructions of the control unit for a round: tests and loop (assumed).
 constexpr std::uint64_t kRoundInstructions = 24;
 
@@ -34,9 +31,7 @@ cn::Machine& checked_machine(cn::Machine& machine, const ProgramConfig& config, 
                              const Work& work) {
   validate(config);
   require_plain(layout, work);
-  HostSemaphores::allocate(machine);
-  machine.poly_memory().allocate("stack", kResidentStackBytes);
-  return machine;
+  return with_semaphores_and_stack(machine);
 }
 
 int pixels_of(cn::Machine& machine, const Layout& layout) {
@@ -77,7 +72,7 @@ ResidentTracer::ResidentTracer(cn::Machine& machine, const Kernels& kernels, con
                        " pixels of the film; allowed is any number without");
 }
 
-void ResidentTracer::run(const std::function<bool(std::uint64_t paths_issued)>& progress) {
+void ResidentTracer::run(const Progress& progress) {
   load_scene();
   results_.begin();
   for (int place = 0; place < paths_; ++place) ended_[std::size_t(place)] = all_pes();

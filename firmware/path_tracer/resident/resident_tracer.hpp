@@ -1,8 +1,8 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "firmware/path_tracer/pipeline/tracer.hpp"
 #include "firmware/path_tracer/program/run_counts.hpp"
 #include "firmware/path_tracer/resident/resident_results.hpp"
 #include "firmware/path_tracer/stages/camera_rays.hpp"
@@ -15,17 +15,16 @@ namespace path_tracer {
 ///
 /// It is for plain scenes that fit. Its paths are those of the bins to the bit. Radiance is summed from the
 /// path's start, so that nothing of a path need be kept; that rounds differently in the last digits.
-class ResidentTracer {
+class ResidentTracer : public Tracer {
  public:
   /// `machine` has the scene image of `layout` in mono memory. Throws ProgramError for a scene or work that
   /// has more than this program knows, and cn::PolyMemoryOverflow for one that does not fit.
   ResidentTracer(cn::Machine& machine, const Kernels& kernels, const ProgramConfig& config,
                  const Layout& layout, const Work& work);
 
-  /// @param progress see PathTracer::Progress
-  void run(const std::function<bool(std::uint64_t paths_issued)>& progress);
+  void run(const Progress& progress) override;
 
-  const RunCounts& counts() const { return counts_; }
+  const RunCounts& counts() const override { return counts_; }
 
  private:
   void load_scene();

@@ -7,7 +7,18 @@
 namespace path_tracer {
 
 /// The use of a group of four random numbers. It is part of the counter, so that uses never share numbers.
-enum class Purpose : std::uint32_t { camera, scatter, light, lobe, coverage };
+enum class Purpose : std::uint32_t {
+  camera,
+  scatter,
+  light,
+  lobe,
+  coverage,
+  // Of light paths, which have numbers of their own (bidirectional/):
+  light_start,  ///< the light, and the point on it
+  emission,     ///< the direction that the path begins with
+  light_scatter,
+  light_lobe,
+};
 
 /// A purpose for each of many things: the counter's word for it. @param number from 0, below 2^28
 inline cn::poly<std::uint32_t> purpose_for_each(Purpose purpose, const cn::poly<std::int32_t>& number) {

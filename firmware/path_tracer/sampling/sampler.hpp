@@ -20,24 +20,38 @@ struct ScatterNumbers {
   cn::poly<double> roulette;
 };
 
+/// The counter's word for a purpose.
+inline cn::poly<std::uint32_t> word_of(Purpose purpose) {
+  return static_cast<std::uint32_t>(purpose);
+}
+
 inline ScatterNumbers scatter_numbers(Sampler sampler, std::uint64_t seed,
                                       const cn::poly<std::int32_t>& pixel,
                                       const cn::poly<std::int32_t>& sample,
-                                      const cn::poly<std::int32_t>& depth) {
+                                      const cn::poly<std::int32_t>& depth,
+                                      const cn::poly<std::uint32_t>& purpose = word_of(Purpose::scatter)) {
   if (sampler == Sampler::sobol) {
-    const SobolPoint point = sobol_point(seed, pixel, sample, depth, Purpose::scatter);
+    const SobolPoint point = sobol_point(seed, pixel, sample, depth, purpose);
     return {sobol_pair(point), sobol_single(point)};
   }
-  const Uniform4 random = uniform4(seed, pixel, sample, depth, Purpose::scatter);
+  const Uniform4 random = uniform4(seed, pixel, sample, depth, purpose);
   return {{random.value[0], random.value[1]}, random.value[2]};
 }
 
 /// Returns the number that chooses among a surface's lobes.
 inline cn::poly<double> lobe_number(Sampler sampler, std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
-                                    const cn::poly<std::int32_t>& sample,
-                                    const cn::poly<std::int32_t>& depth) {
-  if (sampler == Sampler::sobol) return sobol_single(sobol_point(seed, pixel, sample, depth, Purpose::lobe));
-  return uniform4(seed, pixel, sample, depth, Purpose::lobe).value[0];
+                                    const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
+                                    const cn::poly<std::uint32_t>& purpose = word_of(Purpose::lobe)) {
+  if (sampler == Sampler::sobol) return sobol_single(sobol_point(seed, pixel, sample, depth, purpose));
+  return uniform4(seed, pixel, sample, depth, purpose).value[0];
+}
+
+/// Returns two numbers for the direction in which a light path begins.
+inline UniformPair emission_numbers(Sampler sampler, std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
+                                    const cn::poly<std::int32_t>& sample) {
+  if (sampler == Sampler::sobol) return sobol_pair(sobol_point(seed, pixel, sample, 0, Purpose::emission));
+  const Uniform4 random = uniform4(seed, pixel, sample, 0, Purpose::emission);
+  return {random.value[0], random.value[1]};
 }
 
 /// Returns the number that decides whether a surface is there. Each face has its own, because a shadow ray
@@ -93,14 +107,15 @@ inline CandidateNumbers candidate_numbers(Sampler sampler, std::uint64_t seed,
 
 inline LightNumbers light_numbers(Sampler sampler, std::uint64_t seed, const cn::poly<std::int32_t>& pixel,
                                   const cn::poly<std::int32_t>& sample, const cn::poly<std::int32_t>& depth,
-                                  const LightTable& table) {
+                                  const LightTable& table,
+                                  const cn::poly<std::uint32_t>& purpose = word_of(Purpose::light)) {
   if (sampler == Sampler::sobol) {
     // The first number chooses the light, and its unused part the position: both are stratified together.
-    const UniformPair pair = sobol_pair(sobol_point(seed, pixel, sample, depth, Purpose::light));
+    const UniformPair pair = sobol_pair(sobol_point(seed, pixel, sample, depth, purpose));
     const CdfEntry chosen = choose_light_by(table, pair.u);
     return {chosen.entry, {chosen.rest, pair.v}};
   }
-  const Uniform4 random = uniform4(seed, pixel, sample, depth, Purpose::light);
+  const Uniform4 random = uniform4(seed, pixel, sample, depth, purpose);
   const cn::poly<double>& u = random.value[2];
   return {table.classes == nullptr ? sample_cdf(table.cdf, table.count, u)
                                    : sample_light_class(table.cdf, table.classes, table.count, u).entry,

@@ -28,4 +28,7 @@ class CameraRays {
   int pixels_;
 };
 
+/// Throws ProgramError for a stride that does not reach every pixel (ProgramConfig::pixel_stride).
+void require_pixel_stride(int stride, int pixels);
+
 }  // namespace path_tracer

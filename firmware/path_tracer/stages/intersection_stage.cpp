@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/path_tracer/stages/surface_loads.hpp"
+
 namespace path_tracer {
 
 int IntersectionStage::load_bytes(const ProgramConfig& config) {
@@ -77,28 +79,13 @@ void IntersectionStage::load_records(std::uint64_t step, int block) {
   const LaneMask segments = bin.segments();
   const RecordSizes& sizes = context_.layout.sizes;
   load_slots(SlotRecord::hit, step, block, with_tail(to.hit, sizes.hit), bin.live);
-  load_surfaces(step, block);
+  load_surfaces(context_, step, block_of_slots(block), bin, {to.hit, to.surface, to.look_ups});
   load_slots(SlotRecord::path, step, block, with_tail(to.path, sizes.path), segments);
   if (!context_.config.casts_shadow_rays()) return;
   if (!context_.config.resamples_lights())
     context_.loads.copy_m2p(step, block_of_slots(block), to.light.span(),
                             context_.machine.places_in(bin.light_place), segments);
   load_slots(SlotRecord::lighting, step, block, with_tail(to.lighting, sizes.lighting), bin.shadow);
-}
-
-/// A shadow ray needs no more of a tail than the coverage of what it hit and the texture of a light.
-void IntersectionStage::load_surfaces(std::uint64_t step, int block) {
-  const Loads to = loads(step);
-  const int bytes = context_.layout.sizes.surface;
-  const Bins::Block& bin = rays(block);
-  const cn::MonoPlaces places = context_.machine.places_in(bin.surface_place);
-  const int bytes_of_shadow_ray = context_.layout.sizes.surface_of_shadow_ray;
-  const bool spares_tails = context_.config.casts_shadow_rays() && bytes > bytes_of_shadow_ray;
-  const LaneMask with_tails = spares_tails ? bin.hit_something.without(bin.shadow) : bin.hit_something;
-  context_.loads.copy_m2p(step, block_of_slots(block), with_tail(to.surface, bytes), places, with_tails);
-  if (spares_tails)
-    context_.loads.copy_m2p(step, block_of_slots(block), with_tail(to.surface, bytes_of_shadow_ray), places,
-                            bin.hit_something.without(with_tails));
 }
 
 void IntersectionStage::prepare(std::uint64_t step, int block) {
@@ -138,9 +125,8 @@ void IntersectionStage::load_resampled_lights(std::uint64_t step, int block) {
 
 void IntersectionStage::load_all_texels(std::uint64_t step, int block) {
   context_.loads.wait(step);
-  for (int slot = 0; slot < kTextureSlots; ++slot)
-    if (context_.config.features.textures.looks_up(TextureSlot(slot)))
-      load_texels(step, block, TextureSlot(slot));
+  const Loads from = loads(step);
+  load_texels(context_, step, block_of_slots(block), rays(block), {from.hit, from.surface, from.look_ups});
   if (context_.config.features.lights.environment) load_environment(step, block);
 }
 
@@ -157,27 +143,6 @@ void IntersectionStage::load_environment(std::uint64_t step, int block) {
   context_.loads.copy_m2p(
       step, block_of_slots(block), arguments.look_up.part(&EnvironmentLookUp::texel).span(),
       context_.machine.places_in(arguments.look_up.field(&EnvironmentLookUp::place)), misses);
-}
-
-void IntersectionStage::load_texels(std::uint64_t step, int block, TextureSlot slot) {
-  const Loads from = loads(step);
-  const RecordSizes& sizes = context_.layout.sizes;
-  const Bins::Block& bin = rays(block);
-  LaneMask needs;
-  LookUpArguments arguments;
-  arguments.hit = from.hit;
-  arguments.texture = PolyPointer<TextureRecord>(from.surface.span().offset_bytes + sizes.texture[int(slot)]);
-  arguments.footprint_bytes = footprint_bytes(slot);
-  arguments.look_up =
-      PolyPointer<TextureLookUp>(from.look_ups.span().offset_bytes + sizes.look_up[int(slot)]);
-  arguments.needs = &needs;
-  context_.machine.run(
-      context_.kernels.look_up, arguments,
-      counts_for_shadow_rays(slot) ? bin.hit_something : bin.hit_something.without(bin.shadow));
-  const cn::PolySpan look_up = arguments.look_up.span();
-  context_.loads.copy_m2p(step, block_of_slots(block),
-                          {look_up.offset_bytes + look_up.size_bytes, footprint_bytes(slot)},
-                          context_.machine.places_in(arguments.look_up.field(&TextureLookUp::place)), needs);
 }
 
 void IntersectionStage::process(std::uint64_t step, int block) {

@@ -72,11 +72,9 @@ class IntersectionStage : public Stage {
                   const LaneMask& enabled) {
     context_.saves.copy_p2m(step, block_of_slots(block), places(record, step, block), from, enabled);
   }
-  void load_surfaces(std::uint64_t step, int block);
   void load_all_texels(std::uint64_t step, int block);
   /// Takes one of several candidates as the light of each vertex, and loads it.
   void load_resampled_lights(std::uint64_t step, int block);
-  void load_texels(std::uint64_t step, int block, TextureSlot slot);
   void load_environment(std::uint64_t step, int block);
   /// @return segments that passed what they hit
   LaneMask shade(const Loads& from, const ScatterArguments& arguments, const LaneMask& segments);

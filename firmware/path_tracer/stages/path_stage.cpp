@@ -1,7 +1,6 @@
 #include "firmware/path_tracer/stages/path_stage.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace path_tracer {
 
@@ -16,12 +15,7 @@ PathStage::PathStage(const StageContext& context, RayStore& rays, const Work& wo
       is_listed_(work.listed_samples > 0),
       number_{context.machine.poly_memory().allocate("ascending numbers", sizeof(std::int32_t)).offset_bytes},
       segments_(std::size_t(context.config.bin_blocks) * std::size_t(context.machine.num_pes())) {
-  const int pixels = camera_rays_.pixels();
-  const int stride = context.config.pixel_stride;
-  if (pixels > 1 && std::gcd(stride, pixels) != 1)
-    throw ProgramError("pixel stride: found " + std::to_string(stride) +
-                       ", which has a divisor in common with the " + std::to_string(pixels) +
-                       " pixels of the film; allowed is any number without");
+  require_pixel_stride(context.config.pixel_stride, camera_rays_.pixels());
 }
 
 PathStage::Loads PathStage::loads(std::uint64_t step) const {

@@ -67,12 +67,13 @@ RenderResult BenchReferenceCommand::render(const Scene& loaded, const RenderOpti
   return result;
 }
 
-/// Light found by hits only, by other random numbers. No hit finds a light without area. Scenes with such
-/// lights have shadow rays in both images, but others choose and weigh them.
+/// Light found by hits only, by other random numbers, on paths from the lens alone. No hit finds a light
+/// without area. Scenes with such lights have shadow rays in both images, but others choose and weigh them.
 SecondEstimator BenchReferenceCommand::second_estimator(const Scene& loaded) const {
   RenderOptions second = options;
   second.program.seed = options.program.seed + 1;
   second.work.samples = check_samples;
+  second.program.paths = path_tracer::Paths::unidirectional;
   if (loaded.lights.empty()) {
     second.program.program = path_tracer::Program::segments;
     return {second, "find light by hits only"};
@@ -143,7 +144,8 @@ void add_bench_reference_command(CLI::App& bench) {
            2, 1 << 30)
       ->default_str("none");
   state->size.add_to(command);
-  state->firmware.add_to(command, state->options.program, *path_tracer::find_option("seed"));
+  for (const char* const option : {"paths", "light_vertices", "seed"})
+    state->firmware.add_to(command, state->options.program, *path_tracer::find_option(option));
   add_jobs_option(command, state->jobs);
   state->chip.add_to(command, "csx600");
   state->level.add_to(command);

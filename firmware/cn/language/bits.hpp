@@ -24,7 +24,7 @@ inline Chunk shuffle_bytes(Chunk table, Chunk places) {
 #endif
 
 inline Chunk repeat(std::uint64_t low, std::uint64_t high) {
-  Chunk chunk{};
+  Chunk chunk;
   for (std::size_t i = 0; i < kNativeBytes / 8; i += 2) {
     chunk[i] = low;
     chunk[i + 1] = high;

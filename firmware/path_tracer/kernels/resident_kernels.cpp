@@ -1,3 +1,6 @@
+// GCC 12 does not see, where SRAM accesses are observed, that a loop writes a vector of the samplers whole (bits.hpp).
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+
 // Built once for each x86-64 level, whose name is the namespace of the table.
 
 #include "firmware/path_tracer/kernels/resident_kernels.hpp"

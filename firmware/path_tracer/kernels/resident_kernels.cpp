@@ -1,4 +1,5 @@
-// GCC 12 does not see, where SRAM accesses are observed, that a loop writes a vector of the samplers whole (bits.hpp).
+// GCC 12 does not see, where SRAM accesses are observed, that a loop writes a vector of the samplers whole
+// (bits.hpp).
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 // Built once for each x86-64 level, whose name is the namespace of the table.

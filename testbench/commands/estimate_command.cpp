@@ -85,8 +85,8 @@ Estimate EstimateCommand::full_run(const Scene& loaded, const RenderRequest& req
     return json_text(counters);
   };
   Estimate full;
-  for (const auto& [key, value] : Json::parse(run_in_processes({run}, 1)[0]).items())
-    full.counters.push_back({key, value, 0});
+  const Json counters = Json::parse(run_in_processes({run}, 1)[0]);
+  for (const auto& [key, value] : counters.items()) full.counters.push_back({key, value, 0});
   return full;
 }
 

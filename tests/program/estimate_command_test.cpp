@@ -29,7 +29,7 @@ class EstimateCommand : public test_support::CommandLineFixture {
 TEST_F(EstimateCommand, ShowsTheIntervalBesideTheFullRun) {
   const CommandResult result =
       run({"estimate", kScene, "--size", "8x8", "--set", "chip.pes=16", "--bin-blocks", "4", "--samples",
-           "600", "--within", "3%", "--check", "--json", "e.json"});
+           "2000", "--within", "3%", "--check", "--json", "e.json"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   for (const char* const part : {"estimate", "full run", "simulated cycles", "energy, J", "% of the job"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " in " << result.out;
@@ -37,7 +37,7 @@ TEST_F(EstimateCommand, ShowsTheIntervalBesideTheFullRun) {
   EXPECT_EQ(found["format"], "csx600-estimate-1");
   const Json& cycles = found["counters"]["simulated_cycles"];
   EXPECT_EQ(run({"render", kScene, "--size", "8x8", "--set", "chip.pes=16", "--bin-blocks", "4", "--samples",
-                 "600", "--stats", "r.json"})
+                 "2000", "--stats", "r.json"})
                 .exit_code,
             0);
   EXPECT_EQ(cycles["full_run"], Json::parse(read("r.json"))["simulated_cycles"].get<double>());

@@ -85,14 +85,17 @@ TEST(CounterDeclarations, DescriptionNamesEachWithItsUnitAndMeaning) {
 }
 
 /// Statistics of a run through a tree, with lobes, on a chip with a search unit; other runs have no rays by
-/// pass, plain ones no lobes, and other chips no queries.
+/// pass, plain ones no lobes, and other chips no queries. Rays of bidirectional paths are from another run.
 TEST_F(CountersOfRuns, EachDeclarationIsInJsonCsvAndText) {
   RenderOptions options = test_support::render_options(Program::full, 24);
   options.program.traversal = path_tracer::Traversal::refill;
   options.program.built_for = 1;
   options.chip.search_unit.units = 1;
   ASSERT_STREQ(path_tracer::kBuiltForTable[1].name, "glossy");
-  const ordered_json json = statistics(options);
+  ordered_json json = statistics(options);
+  RenderOptions both_ends = test_support::render_options(Program::full, 24);
+  both_ends.program.paths = path_tracer::Paths::bidirectional;
+  json["counts"]["bidirectional"] = statistics(both_ends)["counts"]["bidirectional"];
   const auto flat = testbench::flatten(json);
   std::map<const Counter*, std::string> example;
   for (const auto& [key, value] : flat)

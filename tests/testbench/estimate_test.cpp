@@ -49,11 +49,11 @@ TEST(EstimateOfARender, IntervalsHoldTheTruthAsOftenAsTheySay) {
   double sum_of_errors = 0;
   constexpr int kJobs = 20;
   for (std::uint64_t seed = 1; seed <= kJobs; ++seed) {
-    const RenderRequest request = small_request(600, seed);
-    const Estimate estimate = estimate_render(scene, request, {0.02, 2}, [](int) {});
+    const RenderRequest request = small_request(2000, seed);
+    const Estimate estimate = estimate_render(scene, request, {0.03, 2}, [](int) {});
     ASSERT_GT(estimate.batches, 0);
-    EXPECT_LE(estimate.relative_half_width(), 0.02);
-    EXPECT_LE(2 * estimate.samples_rendered, 600);
+    EXPECT_LE(estimate.relative_half_width(), 0.03);
+    EXPECT_LE(2 * estimate.samples_rendered, 2000);
     const double truth = full_run(scene, request, "simulated_cycles");
     const testbench::EstimatedCounter& cycles = estimate.counter("simulated_cycles");
     held += std::abs(cycles.value - truth) <= cycles.half_width ? 1 : 0;
@@ -65,10 +65,10 @@ TEST(EstimateOfARender, IntervalsHoldTheTruthAsOftenAsTheySay) {
 
 TEST(EstimateOfARender, CountersThatThePathsDecideAddUp) {
   const Scene scene = small_box();
-  const RenderRequest request = small_request(600, 7);
-  const Estimate estimate = estimate_render(scene, request, {0.02, 2}, [](int) {});
+  const RenderRequest request = small_request(2000, 7);
+  const Estimate estimate = estimate_render(scene, request, {0.03, 2}, [](int) {});
   // Paths are as many as were asked for, without any doubt.
-  EXPECT_NEAR(estimate.counter("counts.paths").value, 600 * 64, 1e-6);
+  EXPECT_NEAR(estimate.counter("counts.paths").value, 2000 * 64, 1e-6);
   EXPECT_NEAR(estimate.counter("counts.paths").half_width, 0, 1e-6);
   EXPECT_NEAR(estimate.counter("chip.pes").value, 16, 1e-9);
   for (const char* const key : {"segments", "chip.energy.joules", "chip.ddr.bytes_read"}) {

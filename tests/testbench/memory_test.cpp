@@ -21,8 +21,9 @@ TEST(Memory, WhatTheMachineDoesNotHaveIsOneLine) {
 
 TEST(Memory, AFilmTakesItsSumsAndNoPadding) {
   const testbench::Film film({64, 64}, 1.0);
-  // Six sums of 128 bits and a number of samples of 64 bits a pixel, and the rejected samples.
-  EXPECT_EQ(film.bytes().size(), 64u * 64u * (6 * 16 + 8) + sizeof(testbench::RejectedSamples));
+  // Six sums of 128 bits and a number of samples of 64 bits a pixel, the rejected samples, and whether splats
+  // were added.
+  EXPECT_EQ(film.bytes().size(), 64u * 64u * (6 * 16 + 8) + sizeof(testbench::RejectedSamples) + 1);
 }
 
 }  // namespace memory_test

@@ -82,6 +82,7 @@ void ConnectionStage::process(std::uint64_t step, int block) {
   context_.machine.run(pairs_.kernels.connect, arguments, pairs.occupied);
   bin.live = pairs.occupied;
   bin.shadow = connects;
+  bin.count_rays();
   count(pairs, connects, culled);
 }
 

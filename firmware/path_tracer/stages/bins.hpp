@@ -20,10 +20,14 @@ struct Bins {
     LaneMask finished;  ///< slots whose path ended or fills its slot
     PolyField<MonoAddress> surface_place;
     PolyField<MonoAddress> light_place;
-    // As the latest path step left it, for the control unit and counts:
+    // As the latest step that makes rays left it, for the control unit and counts:
     int segment_count = 0;
     int shadow_ray_count = 0;
 
+    void count_rays() {
+      segment_count = segments().count();
+      shadow_ray_count = shadow.count();
+    }
     bool has_rays() const { return segment_count + shadow_ray_count > 0; }
 
     LaneMask segments() const { return live.without(shadow); }  ///< slots whose ray is a segment

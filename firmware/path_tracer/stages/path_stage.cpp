@@ -164,8 +164,7 @@ void PathStage::continue_paths(std::uint64_t step, int block, PolyField<std::int
   context_.machine.run(context_.kernels.continue_paths, arguments, appended_);
   bin.live = continued_.with(bin.casts);
   bin.shadow = bin.casts;
-  bin.segment_count = bin.segments().count();
-  bin.shadow_ray_count = bin.shadow.count();
+  bin.count_rays();
 }
 
 void PathStage::fill(std::uint64_t step, int block) {

@@ -96,7 +96,7 @@ class Parts {
     const auto counts = [&](int i) { return Json::parse(results[std::size_t(i)]).get<Counts>(); };
     for (int i = 0; i < batches - before; ++i) batches_.push_back(counts(i));
     for (int i = 0; i < halved; ++i)
-      halves_.push_back({counts(batches + 2 * i), counts(batches + 2 * i + 1)});
+      halves_.emplace_back(counts(batches + 2 * i), counts(batches + 2 * i + 1));
   }
 
   int samples() const { return samples_; }

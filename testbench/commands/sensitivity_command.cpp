@@ -98,7 +98,7 @@ std::vector<Setting> SensitivityCommand::overrides() const {
 }
 
 void SensitivityCommand::print(const Sensitivity& sensitivity, const Json* run) const {
-  const Json& statistics = sensitivity.statistics;
+  const Json& statistics = *sensitivity.statistics;
   if (run != nullptr && run->contains("simulated_cycles") &&
       (*run)["simulated_cycles"] != statistics["simulated_cycles"] && settings.empty() && size.empty() &&
       samples.empty() && chip.empty())
@@ -122,7 +122,7 @@ void SensitivityCommand::print(const Sensitivity& sensitivity, const Json* run) 
 void SensitivityCommand::write(const Sensitivity& sensitivity) const {
   outputs.write("--csv", [&] { return sensitivity_csv(sensitivity, order); });
   outputs.write("--stats", [&] {
-    Json statistics = sensitivity.statistics;
+    Json statistics = *sensitivity.statistics;
     statistics["sensitivity"] = sensitivity_json(sensitivity, order);
     return statistics_json(statistics);
   });

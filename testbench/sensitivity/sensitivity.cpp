@@ -73,8 +73,8 @@ Sensitivity measure_sensitivity(const SweepPoint& point, Variations variations, 
   const std::vector<std::string> results =
       run_in_processes(work, jobs, [&](int finished) { progress(double(finished) / double(work.size())); });
   Sensitivity sensitivity;
-  sensitivity.statistics = Json::parse(results[0])["statistics"];
-  sensitivity.base = figures_of(sensitivity.statistics);
+  sensitivity.statistics = std::make_shared<const Json>(Json::parse(results[0])["statistics"]);
+  sensitivity.base = figures_of(*sensitivity.statistics);
   sensitivity.left_out = std::move(variations.left_out);
   sensitivity.share = share;
   for (std::size_t i = 0; i < variations.list.size(); ++i) {

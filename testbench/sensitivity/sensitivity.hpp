@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -25,7 +26,8 @@ struct VariedRun {
 };
 
 struct Sensitivity {
-  nlohmann::ordered_json statistics;  ///< of the run as it is, without the section `simulator`
+  /// Of the run as it is, without the section `simulator`.
+  std::shared_ptr<const nlohmann::ordered_json> statistics;
   RunFigures base;
   std::vector<VariedRun> runs;
   std::vector<LeftOut> left_out;

@@ -80,7 +80,7 @@ std::string value_on(const Sensitivity& sensitivity, const Row& row) {
     std::replace(path.begin(), path.end(), '.', '/');
     return path;
   }());
-  const Json& value = sensitivity.statistics[place];
+  const Json& value = (*sensitivity.statistics)[place];
   return value.is_string() ? value.get<std::string>() : json_text(value);
 }
 

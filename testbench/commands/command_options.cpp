@@ -51,14 +51,24 @@ std::vector<InputName> inputs_of(const ChipOptions& chip, const Scene& scene) {
   return inputs;
 }
 
+Setting setting_of(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw InputError("--set: found '" + text + "', allowed is key=value");
+  return {text.substr(0, equals), text.substr(equals + 1), "--set"};
+}
+
+std::vector<Setting> settings_of(const std::vector<std::string>& texts) {
+  std::vector<Setting> settings;
+  for (const std::string& text : texts) settings.push_back(setting_of(text));
+  return settings;
+}
+
 model::ChipConfig SetOptions::chip(const std::string& name) const {
   try {
     model::ChipConfig config = load_chip(name);
-    for (const std::string& setting : settings_) {
-      const std::size_t equals = setting.find('=');
-      if (equals == std::string::npos)
-        throw InputError("--set: found '" + setting + "', allowed is key=value");
-      model::set_parameter(config, setting.substr(0, equals), setting.substr(equals + 1), "--set");
+    for (const std::string& text : settings_) {
+      const Setting setting = setting_of(text);
+      model::set_parameter(config, setting.key, setting.value, setting.origin);
     }
     model::validate(config);
     return config;

@@ -10,6 +10,7 @@
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
 #include "testbench/commands/output_files.hpp"
+#include "testbench/run/run_settings.hpp"
 #include "testbench/scene/scene.hpp"
 
 namespace testbench {
@@ -24,6 +25,10 @@ class SetOptions {
  private:
   std::vector<std::string> settings_;
 };
+
+/// The value of a --set. Throws InputError for a text that is not key=value.
+Setting setting_of(const std::string& text);
+std::vector<Setting> settings_of(const std::vector<std::string>& texts);
 
 /// --chip and --set.
 class ChipOptions {

@@ -9,6 +9,7 @@
 #include "testbench/commands/named_values.hpp"
 #include "testbench/commands/output_files.hpp"
 #include "testbench/plug_in/firmware_path.hpp"
+#include "testbench/run/timing_name.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/sensitivity/run_file.hpp"
 #include "testbench/sensitivity/sensitivity_table.hpp"
@@ -87,13 +88,9 @@ std::vector<Setting> SensitivityCommand::overrides() const {
   if (!chip.empty()) all.push_back({"chip", chip, "--chip"});
   if (!size.empty()) all.push_back({"size", size, "--size"});
   if (!samples.empty()) all.push_back({"samples", samples, "--samples"});
-  if (timing_option->count() > 0)
-    all.push_back({"timing", timing.style() == model::TimingStyle::loosely_timed ? "lt" : "at", "--timing"});
-  for (const std::string& text : settings) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) throw InputError("--set: found '" + text + "', allowed is key=value");
-    all.push_back({text.substr(0, equals), text.substr(equals + 1), "--set"});
-  }
+  if (timing_option->count() > 0) all.push_back({"timing", timing_name(timing.style()), "--timing"});
+  const std::vector<Setting> given = settings_of(settings);
+  all.insert(all.end(), given.begin(), given.end());
   return all;
 }
 

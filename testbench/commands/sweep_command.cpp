@@ -37,7 +37,6 @@ struct SweepCommand {
   void run();
 
  private:
-  std::vector<Setting> overrides() const;
   /// Throws InputError on the first rank when any rank cannot; the others get none then.
   std::unique_ptr<Sweep> read(Ranks& ranks) const;
   void run_first(const Sweep& sweep, Ranks& ranks) const;
@@ -45,23 +44,13 @@ struct SweepCommand {
   void write_tables(const fs::path& directory, const Sweep& sweep, const PointStore& store) const;
 };
 
-std::vector<Setting> SweepCommand::overrides() const {
-  std::vector<Setting> result;
-  for (const std::string& text : settings) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) throw InputError("--set: found '" + text + "', allowed is key=value");
-    result.push_back({text.substr(0, equals), text.substr(equals + 1), "--set"});
-  }
-  return result;
-}
-
 std::unique_ptr<Sweep> SweepCommand::read(Ranks& ranks) const {
   std::unique_ptr<Sweep> sweep;
   std::string error;
   try {
     if (!ranks.alone() && jobs_option->count() > 0)
       throw InputError("--jobs: found under mpirun, where each rank runs one point at a time; leave it out");
-    sweep = std::make_unique<Sweep>(load_sweep_file(file), overrides(), reach.is_outside_allowed());
+    sweep = std::make_unique<Sweep>(load_sweep_file(file), settings_of(settings), reach.is_outside_allowed());
   } catch (const InputError& wrong) {
     error = wrong.what();
   }

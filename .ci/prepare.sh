@@ -5,7 +5,7 @@ packages=(
   g++ cmake ninja-build pkg-config binutils
   libsystemc-dev libglm-dev libopenexr-dev libpng-dev libjpeg-dev libssl-dev
   libsleef-dev librandom123-dev libglu1-mesa-dev libmeshoptimizer-dev libdraco-dev libembree-dev
-  libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
+  libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libmuparser-dev libpugixml-dev
   libgtest-dev libbenchmark-dev
   libopenmpi-dev openmpi-bin gtkwave chromium python3
 )

@@ -3,9 +3,12 @@
 #include <memory>
 
 #include "testbench/commands/commands.hpp"
+#include "testbench/commands/output_files.hpp"
 #include "testbench/statistics/counters.hpp"
+#include "testbench/statistics/json_file.hpp"
 #include "testbench/statistics/renamed_keys.hpp"
 #include "testbench/statistics/statistics_difference.hpp"
+#include "testbench/statistics/test_report.hpp"
 #include "testbench/system/error.hpp"
 
 namespace testbench {
@@ -18,11 +21,13 @@ struct CompareCommand {
   std::vector<std::string> absolute;
   std::vector<std::string> ignore;
   bool with_simulator = false;
+  OutputFiles outputs;
 
   void run() const;
 
  private:
   ComparisonRules rules() const;
+  nlohmann::ordered_json json_of(const Comparison& comparison) const;
 };
 
 struct KeyAndNumber {
@@ -65,14 +70,25 @@ ComparisonRules CompareCommand::rules() const {
   return rules;
 }
 
+nlohmann::ordered_json CompareCommand::json_of(const Comparison& comparison) const {
+  return {{"a", a},
+          {"b", b},
+          {"compared", comparison.keys.size()},
+          {"differences", differences_json(comparison.differences)}};
+}
+
 void CompareCommand::run() const {
   const ComparisonRules by = rules();
+  outputs.require_writable();
+  outputs.require_no_input({{"the first run", a}, {"the second run", b}});
   const FlatStatistics first = flatten(read_statistics(a));
   const Comparison comparison = compare(first, flatten(read_statistics(b)), by);
   std::fputs(difference_text(comparison.differences).c_str(), stdout);
-  if (comparison.compared == 0)
+  if (comparison.keys.empty())
     throw InputError("--ignore: found that it leaves no value to compare, allowed are keys that leave one");
-  const std::string compared = std::to_string(comparison.compared);
+  outputs.write("--junit", [&] { return junit_xml(a + " against " + b, cases_of(comparison)); });
+  outputs.write("--json", [&] { return json_text(json_of(comparison), 1) + "\n"; });
+  const std::string compared = std::to_string(comparison.keys.size());
   if (!comparison.differences.empty())
     throw RunError(a + " and " + b + " differ in " + std::to_string(comparison.differences.size()) + " of " +
                    compared + " values");
@@ -98,6 +114,8 @@ void add_compare_command(CLI::App& app) {
       ->type_name("KEYGLOB=DISTANCE");
   command.add_option("--ignore", state->ignore, "Leave these keys out")->type_name("KEYGLOB");
   command.add_flag("--simulator", state->with_simulator, "Compare the simulator's times and memory, too");
+  state->outputs.add_to(command, "--junit", "Every value as a case of a JUnit test suite");
+  state->outputs.add_to(command, "--json", "The values that differ");
   command.callback([state] { state->run(); });
 }
 

@@ -8,6 +8,7 @@
 #include "testbench/commands/output_files.hpp"
 #include "testbench/files/atomic_file.hpp"
 #include "testbench/statistics/json_file.hpp"
+#include "testbench/sweep/sweep_columns.hpp"
 #include "testbench/sweep/sweep_run.hpp"
 #include "testbench/sweep/sweep_table.hpp"
 #include "testbench/system/error.hpp"
@@ -29,6 +30,7 @@ struct SweepCommand {
   std::vector<std::string> settings;
   bool in_full = false;
   bool retry_failed = false;
+  bool with_kernels = false;
   int jobs = 1;
   ReachOption reach;
   TimeLimitOption limit;
@@ -51,6 +53,7 @@ std::unique_ptr<Sweep> SweepCommand::read(Ranks& ranks) const {
     if (!ranks.alone() && jobs_option->count() > 0)
       throw InputError("--jobs: found under mpirun, where each rank runs one point at a time; leave it out");
     sweep = std::make_unique<Sweep>(load_sweep_file(file), settings_of(settings), reach.is_outside_allowed());
+    require_columns(*sweep);
   } catch (const InputError& wrong) {
     error = wrong.what();
   }
@@ -68,11 +71,27 @@ void SweepCommand::forget_failed(const Sweep& sweep, PointStore& store) const {
       store.forget(point.id);
 }
 
+/// Says how many points the sweep's constraints leave out, if any.
+void print_constrained(const Json& json) {
+  const auto with_status = [&](const char* status) {
+    return std::count_if(json["points"].begin(), json["points"].end(),
+                         [&](const Json& point) { return point["status"] == status; });
+  };
+  const auto excluded = with_status("excluded");
+  const auto unmet = with_status("unmet");
+  if (excluded + unmet > 0)
+    std::printf("constraints: %td points were not run, %td that were run do not meet them\n", excluded,
+                unmet);
+}
+
 void SweepCommand::write_tables(const fs::path& directory, const Sweep& sweep,
                                 const PointStore& store) const {
-  const Json json = sweep_json(sweep, store);
-  write_together(
-      {{directory / "sweep.json", json_text(json, 1) + "\n"}, {directory / "sweep.csv", sweep_csv(json)}});
+  const Json json = sweep_json(sweep, store, with_kernels ? KernelColumns::shown : KernelColumns::left_out);
+  const SweepTables tables = sweep_tables(sweep, json);
+  write_together({{directory / "sweep.json", json_text(json, 1) + "\n"},
+                  {directory / "sweep.csv", tables.points},
+                  {directory / "columns.csv", tables.columns}});
+  print_constrained(json);
 }
 
 struct Counts {
@@ -108,7 +127,8 @@ void SweepCommand::run_first(const Sweep& sweep, Ranks& ranks) const {
   for (const char* const name : kSweepFiles)
     require_outputs_apart({{"--output", (directory / name).string()}}, {{"the sweep file", file}});
   PointStore store(directory, build_digest(sweep.firmware_builds()));
-  for (const char* const name : {"sweep.json", "sweep.csv"}) require_writable(directory / name);
+  for (const char* const name : {"sweep.json", "sweep.csv", "columns.csv"})
+    require_writable(directory / name);
   if (retry_failed) forget_failed(sweep, store);
   const std::size_t before = count_finished(sweep, store);
   const InterruptGuard interrupt;
@@ -160,7 +180,9 @@ void add_sweep_command(CLI::App& app) {
   command.add_option("file", state->file, "TOML file with base values and axes")
       ->type_name("FILE")
       ->required();
-  command.add_option("-o,--output", state->output, "Directory for sweep.csv, sweep.json and points.jsonl")
+  command
+      .add_option("-o,--output", state->output,
+                  "Directory for sweep.csv, columns.csv, sweep.json and points.jsonl")
       ->check(error_of_no_file, "")
       ->type_name("DIRECTORY")
       ->default_str("the file's name with .sweep");
@@ -170,6 +192,8 @@ void add_sweep_command(CLI::App& app) {
   state->reach.add_to(command);
   add_jobs_option(command, state->jobs);
   command.add_flag("--full", state->in_full, "Run every point in full instead of replaying streams");
+  command.add_flag("--kernels", state->with_kernels,
+                   "Write the results of each kernel as well; a finished sweep is only written anew");
   command.add_flag("--retry-failed", state->retry_failed, "Run points again that failed");
   state->limit.add_to(command);
   state->jobs_option = command.get_option("--jobs");

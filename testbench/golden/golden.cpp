@@ -1,6 +1,7 @@
 #include "testbench/golden/golden.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <set>
@@ -174,6 +175,16 @@ std::string move_line(const std::string& key, const Move& move, std::size_t runs
          "; " + move.first_run + ": " + text_of(move.first.a) + " -> " + text_of(move.first.b) + '\n';
 }
 
+using Presence = GoldenVerdict::Presence;
+constexpr std::array kPresenceNames = {"both", "only_found", "only_kept"};  ///< in the order of Presence
+
+/// "" of a run that was made and is kept.
+std::string presence_line(const GoldenVerdict& verdict) {
+  if (verdict.presence == Presence::both) return "";
+  return (verdict.presence == Presence::only_found ? "  new run: " : "  run gone: ") +
+         shortened(printable(verdict.run)) + '\n';
+}
+
 /// Runs of all files by "cornell_box-paper full n1 both lt".
 std::vector<std::pair<std::string, const FlatStatistics*>> runs_of(const GoldenTables& tables) {
   std::vector<std::pair<std::string, const FlatStatistics*>> runs;
@@ -224,28 +235,60 @@ void write_golden(const fs::path& directory, const GoldenTables& tables) {
     if (tables.count(file) == 0) fs::remove(directory / file);
 }
 
-std::string golden_moves(const GoldenTables& kept, const GoldenTables& found) {
-  const auto after = runs_of(found);
+std::vector<GoldenVerdict> golden_verdicts(const GoldenTables& kept, const GoldenTables& found) {
   std::map<std::string, const FlatStatistics*> before;
   for (const auto& [run, values] : runs_of(kept)) before[run] = values;
+  std::vector<GoldenVerdict> verdicts;
+  for (const auto& [run, values] : runs_of(found)) {
+    const auto old = before.find(run);
+    if (old == before.end()) {
+      verdicts.push_back({run, Presence::only_found});
+    } else {
+      verdicts.push_back({run, Presence::both, compare(*old->second, *values, {}).differences});
+      before.erase(old);
+    }
+  }
+  for (const auto& [run, values] : before) verdicts.push_back({run, Presence::only_kept});
+  return verdicts;
+}
+
+std::string golden_moves(const std::vector<GoldenVerdict>& verdicts) {
   std::string text;
   std::vector<std::string> order;
   std::map<std::string, Move> moves;
-  for (const auto& [run, values] : after) {
-    const auto old = before.find(run);
-    if (old == before.end()) {
-      text += "  new run: " + run + '\n';
-      continue;
-    }
-    for (const Difference& difference : compare(*old->second, *values, {}).differences) {
+  std::size_t runs = 0;
+  for (const GoldenVerdict& verdict : verdicts) {
+    runs += verdict.presence != Presence::only_kept;
+    text += presence_line(verdict);
+    for (const Difference& difference : verdict.moves) {
       if (moves.count(difference.key) == 0) order.push_back(difference.key);
-      moves[difference.key].add(difference, run);
+      moves[difference.key].add(difference, verdict.run);
     }
-    before.erase(old);
   }
-  for (const auto& [run, values] : before) text += "  run gone: " + shortened(printable(run)) + '\n';
-  for (const std::string& key : order) text += move_line(key, moves[key], after.size());
+  for (const std::string& key : order) text += move_line(key, moves[key], runs);
   return text;
+}
+
+std::vector<TestCase> golden_cases(const std::vector<GoldenVerdict>& verdicts) {
+  std::vector<TestCase> cases;
+  for (const GoldenVerdict& verdict : verdicts) {
+    std::string failure = presence_line(verdict);
+    if (!verdict.moves.empty())
+      failure += std::to_string(verdict.moves.size()) + " counters moved\n" + difference_text(verdict.moves);
+    const std::size_t blank = verdict.run.find(' ');
+    cases.push_back({verdict.run.substr(0, blank),
+                     verdict.run.substr(std::min(blank, verdict.run.size() - 1) + 1), std::move(failure)});
+  }
+  return cases;
+}
+
+Json golden_json(const std::vector<GoldenVerdict>& verdicts) {
+  Json list = Json::array();
+  for (const GoldenVerdict& verdict : verdicts)
+    list.push_back({{"run", verdict.run},
+                    {"presence", kPresenceNames.at(std::size_t(verdict.presence))},
+                    {"moves", differences_json(verdict.moves)}});
+  return list;
 }
 
 }  // namespace testbench

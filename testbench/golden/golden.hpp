@@ -9,7 +9,7 @@
 #include "testbench/plug_in/plug_in_settings.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/run/traversal_choice.hpp"
-#include "testbench/statistics/statistics_difference.hpp"
+#include "testbench/statistics/test_report.hpp"
 
 namespace testbench {
 
@@ -69,7 +69,25 @@ GoldenTables read_golden(const std::filesystem::path& directory);
 /// Writes the tables, all or none, and removes .csv files of others. One row a counter, one column a run.
 void write_golden(const std::filesystem::path& directory, const GoldenTables& tables);
 
-/// What moved from `kept` to `found`: by counter, in how many runs and how far. "" when no counter did.
-std::string golden_moves(const GoldenTables& kept, const GoldenTables& found);
+/// A run that was made or is in the tables, and how its counters differ from those that are kept.
+struct GoldenVerdict {
+  enum class Presence : std::uint8_t { both, only_found, only_kept };
+
+  std::string run;  ///< "cornell_box-paper full n1 both lt"
+  Presence presence = Presence::both;
+  std::vector<Difference> moves = {};  ///< a: kept, b: found
+
+  bool has_moved() const { return presence != Presence::both || !moves.empty(); }
+};
+
+/// Every run, in the order of `found`; then those that are kept and were not made.
+std::vector<GoldenVerdict> golden_verdicts(const GoldenTables& kept, const GoldenTables& found);
+
+/// What moved: by counter, in how many runs and how far. "" when no counter did.
+std::string golden_moves(const std::vector<GoldenVerdict>& verdicts);
+
+/// A test case for each run, and for machines [{ run, presence, moves }].
+std::vector<TestCase> golden_cases(const std::vector<GoldenVerdict>& verdicts);
+nlohmann::ordered_json golden_json(const std::vector<GoldenVerdict>& verdicts);
 
 }  // namespace testbench

@@ -134,7 +134,7 @@ Comparison compare(const FlatStatistics& a, const FlatStatistics& b, const Compa
   Comparison comparison;
   for (const std::string& key : union_of_keys(a, b, in_a)) {
     if (is_ignored(key, rules)) continue;
-    ++comparison.compared;
+    comparison.keys.push_back(key);
     const Difference pair{key, find(in_a, key), find(in_b, key)};
     if (differ(pair, rules)) comparison.differences.push_back(pair);
   }

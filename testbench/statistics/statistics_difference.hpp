@@ -46,7 +46,7 @@ struct ComparisonRules {
 
 struct Comparison {
   std::vector<Difference> differences;  ///< in the order of the files
-  std::size_t compared = 0;             ///< keys of either, without the ignored ones
+  std::vector<std::string> keys;        ///< compared: those of either, without the ignored ones
 };
 
 Comparison compare(const FlatStatistics& a, const FlatStatistics& b, const ComparisonRules& rules);

@@ -95,7 +95,7 @@ std::string run_point(const SweepPoint& point, const PointRecording* recording, 
 }
 
 Json failed_point(const std::string& message) {
-  return {{"status", "failed"}, {"error", message.substr(0, message.find('\n'))}};
+  return {{"status", "failed"}, {"error", message}};
 }
 
 std::string first_difference(const Json& a, const Json& b) {

@@ -15,6 +15,7 @@
 namespace testbench {
 namespace {
 
+constexpr const char* kNameCharacters = "abcdefghijklmnopqrstuvwxyz0123456789_";
 constexpr std::size_t kMostSteps = 100'000;
 constexpr std::size_t kMostAxisValues = 200'000;  ///< of all keys on axes
 
@@ -42,6 +43,10 @@ class SweepReader {
         read_axes(node);
       } else if (key == "audit") {
         read_audit(node);
+      } else if (key == "constraint") {
+        sweep_.constraints = read_expressions(node, key);
+      } else if (key == "derived") {
+        sweep_.derived = read_expressions(node, key);
       } else {
         read_base(node, key);
       }
@@ -94,6 +99,35 @@ class SweepReader {
         refuse(value, key, "an unknown key", "audit.share and audit.seed");
       }
     }
+  }
+
+  std::vector<NamedExpression> read_expressions(const toml::node& node, const std::string& group) const {
+    const toml::table* const table = node.as_table();
+    if (table == nullptr) refuse(node, group, found_text(node), "[" + group + "] with name = \"expression\"");
+    std::vector<NamedExpression> expressions;
+    for (const auto& [name, value] : *table)
+      expressions.push_back(read_expression(value, group, std::string(name.str())));
+    return expressions;
+  }
+
+  NamedExpression read_expression(const toml::node& node, const std::string& group,
+                                  const std::string& name) const {
+    const std::string key = group + "." + name;
+    if (name.empty() || name.find_first_not_of(kNameCharacters) != std::string::npos)
+      refuse(node, group, "'" + name + "'", "names of a-z, 0-9 and _");
+    const toml::table* const with_unit = node.as_table();
+    const toml::node* const text = with_unit != nullptr ? with_unit->get("expression") : &node;
+    if (text == nullptr || !text->is_string())
+      refuse(node, key, found_text(node), "\"expression\" or { expression = \"...\", unit = \"...\" }");
+    NamedExpression made{name, Expression(**text->as_string(), line_of(sweep_.path, node) + ": " + key), "-"};
+    if (with_unit == nullptr) return made;
+    for (const auto& [part, value] : *with_unit) {
+      if (part == "expression") continue;
+      if (part != "unit" || !value.is_string())
+        refuse(value, key, "'" + std::string(part.str()) + "'", "expression and unit, which are texts");
+      made.unit = **value.as_string();
+    }
+    return made;
   }
 
   void read_axes(const toml::node& node) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "testbench/run/run_settings.hpp"
+#include "testbench/sweep/expression.hpp"
 
 namespace testbench {
 
@@ -12,6 +13,13 @@ namespace testbench {
 struct SweepAxis {
   std::vector<std::string> keys;
   std::vector<std::vector<Setting>> steps;  ///< in each, one setting a key
+};
+
+/// An expression over columns, under a name that the sweep's file gives it.
+struct NamedExpression {
+  std::string name;
+  Expression expression;
+  std::string unit = "-";
 };
 
 /// A sweep as its file says it:
@@ -36,10 +44,22 @@ struct SweepAxis {
 ///     firmware = "libsaxpy.so"               # or the name of one that was installed with the program
 ///     [[axis]]
 ///     option.blocks = [1, 8, 64]
+///
+/// What must hold of a point, and columns made of others, are expressions (expression.hpp) over parameters of
+/// chip and run, and over results:
+///
+///     [constraint]
+///     sram = "chip.pes * poly.sram_bytes <= 589824"   # over parameters alone: other points are not run
+///     power = "chip.energy.chip_watts <= 12"          # over results: other points are marked
+///     [derived]
+///     nanojoules_a_ray = "chip.energy.joules / rays * 1e9"
+///     rays_a_clock = { expression = "rays / simulated_cycles", unit = "rays/cycle" }
 struct SweepFile {
   std::string path;
   std::vector<Setting> base;
   std::vector<SweepAxis> axes;
+  std::vector<NamedExpression> constraints;
+  std::vector<NamedExpression> derived;
   double audit_share = 0.05;
   std::uint64_t audit_seed = 1;
 

@@ -1,7 +1,10 @@
 #include "testbench/sweep/sweep_points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "testbench/film/film_size.hpp"
 #include "testbench/mono_image/mono_image.hpp"
@@ -40,6 +43,14 @@ std::string scene_digest(const Scene& scene) {
   return sha256(seen);
 }
 
+/// A flag is 0 or 1; none for another text.
+std::optional<double> number_from(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
+  std::istringstream stream(text);
+  double number = 0;
+  return stream >> number && stream.eof() ? std::optional(number) : std::nullopt;
+}
+
 /// The firmware's options that the settings name.
 GivenOptions given_options(const std::vector<Setting>& settings) {
   const std::string prefix = "firmware.";
@@ -52,7 +63,10 @@ GivenOptions given_options(const std::vector<Setting>& settings) {
 }  // namespace
 
 Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides, bool is_outside_allowed)
-    : keys_(file.keys()), base_(file.base), is_outside_allowed_(is_outside_allowed) {
+    : keys_(file.keys()),
+      base_(file.base),
+      expressions_{file.constraints, file.derived},
+      is_outside_allowed_(is_outside_allowed) {
   for (const SweepAxis& axis : file.axes) axes_.push_back(axis.keys);
   for (const Setting& setting : overrides) {
     require_setting(setting);
@@ -68,6 +82,41 @@ Sweep::Sweep(const SweepFile& file, const std::vector<Setting>& overrides, bool 
     points_.push_back(make_point(file, number));
   const auto cannot_run = [](const SweepPoint& point) { return !point.error.empty(); };
   if (std::all_of(points_.begin(), points_.end(), cannot_run)) throw InputError(points_.front().error);
+  const auto is_excluded = [](const SweepPoint& point) { return !point.excluded.empty(); };
+  if (std::all_of(points_.begin(), points_.end(), is_excluded))
+    throw InputError(file.path + ": found that no point meets the constraints (the first: " +
+                     points_.front().excluded + "); allowed: constraints that leave a point");
+}
+
+bool Sweep::is_parameter(const std::string& key) const {
+  const auto has_key = [&](const Setting& setting) { return setting.key == key; };
+  return model::find_parameter(key) != nullptr || std::find(keys_.begin(), keys_.end(), key) != keys_.end() ||
+         std::any_of(base_.begin(), base_.end(), has_key);
+}
+
+void Sweep::constrain(SweepPoint& point, const std::vector<Setting>& settings,
+                      const RunSettings* render) const {
+  const auto read = [&](const NamedExpression& named) {
+    for (const std::string& key : named.expression.names()) {
+      if (!is_parameter(key)) continue;
+      const auto is_key = [&](const Setting& setting) { return setting.key == key; };
+      const auto given = std::find_if(settings.rbegin(), settings.rend(), is_key);
+      const std::string text = render != nullptr          ? testbench::value_of(*render, key)
+                               : given != settings.rend() ? given->value
+                                                          : model::parameter_text(chip_of(point), key);
+      const std::optional<double> number = number_from(text);
+      if (!number)
+        throw InputError(named.expression.origin() + ": found '" + key + "', which is '" + text +
+                         "'; allowed: parameters that are numbers");
+      point.parameters[key] = *number;
+    }
+  };
+  for (const NamedExpression& derived : expressions_.derived) read(derived);
+  for (const NamedExpression& constraint : expressions_.constraints) {
+    read(constraint);
+    const std::optional<double> value = testbench::value_of(constraint.expression, point, {});
+    if (value && !is_met(*value) && point.excluded.empty()) point.excluded = unmet_text(constraint);
+  }
 }
 
 SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
@@ -100,6 +149,8 @@ SweepPoint Sweep::make_point(const SweepFile& file, std::uint64_t number) {
   } catch (const InputError& error) {
     return fail(error);
   }
+  constrain(point, settings, render ? &*render : nullptr);
+  if (!point.excluded.empty()) return point;
   if (render) {
     LoadedScene& scene = scene_of(*render);  // what it throws is of every point
     try {
@@ -171,6 +222,28 @@ Sweep::LoadedScene& Sweep::scene_of(const RunSettings& run) {
     loaded->digest = scene_digest(loaded->scene);
   }
   return *loaded;
+}
+
+std::optional<double> value_of(const Expression& expression, const SweepPoint& point,
+                               const nlohmann::ordered_json& results) {
+  std::vector<double> values;
+  for (const std::string& name : expression.names()) {
+    if (const auto parameter = point.parameters.find(name); parameter != point.parameters.end())
+      values.push_back(parameter->second);
+    else if (const auto result = results.find(name); result != results.end() && result->is_number())
+      values.push_back(result->get<double>());
+    else
+      return std::nullopt;
+  }
+  return expression.value(values);
+}
+
+bool is_met(double value) {
+  return value != 0 && !std::isnan(value);
+}
+
+std::string unmet_text(const NamedExpression& constraint) {
+  return "constraint " + constraint.name + " is not met: " + constraint.expression.text();
 }
 
 const model::ChipConfig& chip_of(const SweepPoint& point) {

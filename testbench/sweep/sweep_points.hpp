@@ -2,6 +2,8 @@
 
 #include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,7 +29,26 @@ struct SweepPoint {
   bool audited = false;             ///< replayed and run in full, and both must agree
   std::variant<RenderPoint, PlugInSettings> run;  ///< a firmware outside this tree is the alternative
   std::string error;                              ///< why it cannot run, if its values do not fit each other
+  std::string excluded;                      ///< the constraint over its parameters that it does not meet
+  std::map<std::string, double> parameters;  ///< those that the sweep's expressions name
 };
+
+/// What a sweep says of its points beside their values.
+struct SweepExpressions {
+  std::vector<NamedExpression> constraints;
+  std::vector<NamedExpression> derived;
+};
+
+/// The value of an expression, whose names stand for parameters of a point or for its results; none where a
+/// result that it names is missing.
+std::optional<double> value_of(const Expression& expression, const SweepPoint& point,
+                               const nlohmann::ordered_json& results);
+
+/// Whether a constraint with this value is met: it is neither 0 nor undefined.
+bool is_met(double value);
+
+/// What a table says of a point that does not meet a constraint.
+std::string unmet_text(const NamedExpression& constraint);
 
 /// All points of a sweep, with the scenes they render or the firmware that they run.
 class Sweep {
@@ -40,6 +61,9 @@ class Sweep {
   const std::vector<std::vector<std::string>>& axes() const { return axes_; }  ///< their keys
   const std::vector<Setting>& base() const { return base_; }
   const std::vector<SweepPoint>& points() const { return points_; }
+  const SweepExpressions& expressions() const { return expressions_; }
+  /// Whether an expression may name it as a value that each point has before it runs.
+  bool is_parameter(const std::string& key) const;
   /// Names the builds of the firmwares that the points run; "" of renders.
   std::string firmware_builds() const;
   /// Of every scene, by its path.
@@ -55,6 +79,8 @@ class Sweep {
   /// Loads the firmwares that the file names and checks every value of their options.
   void load_libraries(const SweepFile& file);
   SweepPoint make_point(const SweepFile& file, std::uint64_t number);
+  /// Reads the parameters that the expressions name, and says whether the point is to be left out.
+  void constrain(SweepPoint& point, const std::vector<Setting>& settings, const RunSettings* render) const;
   /// @param given options of the firmware that the sweep sets; the others are chosen
   static void set_run(SweepPoint& point, RunSettings run, LoadedScene& loaded, const GivenOptions& given);
   static void set_run(SweepPoint& point, PlugInSettings&& run);
@@ -63,6 +89,7 @@ class Sweep {
   std::vector<std::string> keys_;
   std::vector<std::vector<std::string>> axes_;
   std::vector<Setting> base_;
+  SweepExpressions expressions_;
   bool is_outside_allowed_;
   std::map<std::string, std::unique_ptr<LoadedScene>> scenes_;             ///< by path and size
   std::map<std::string, std::shared_ptr<const SharedLibrary>> libraries_;  ///< by the file's name for them

@@ -108,6 +108,7 @@ class SweepRun {
     std::vector<std::size_t> left;
     std::set<std::string> taken;
     for (std::size_t i = 0; i < sweep_.points().size(); ++i) {
+      if (!point(i).excluded.empty()) continue;
       if (store_.find(point(i).id) != nullptr || !taken.insert(point(i).id).second) continue;
       if (point(i).error.empty()) {
         left.push_back(i);

@@ -5,8 +5,8 @@
 
 namespace testbench {
 
-/// One line on the terminal with a bar, the share done and the time left. Prints nothing when standard error
-/// is not a terminal.
+/// One line on the terminal with a bar, the share done and the time left. Where standard error is a file or a
+/// pipe, a line of its own once in half a minute.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
@@ -20,6 +20,8 @@ class ProgressBar {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  void draw(double share, double left_seconds);
 
   std::string label_;
   bool on_terminal_;

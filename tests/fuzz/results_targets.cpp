@@ -44,7 +44,7 @@ std::string with_identities(std::string_view input, const testbench::Sweep& swee
 void read_golden_table(std::string_view input) {
   write_file("table.csv", input);
   const testbench::GoldenTables tables = testbench::read_golden(".");
-  testbench::golden_moves({}, tables);
+  testbench::golden_moves(testbench::golden_verdicts({}, tables));
   if (tables.size() != 1) fail("another number of tables than files");
 }
 
@@ -65,7 +65,7 @@ void read_points(std::string_view input) {
   const testbench::Sweep& sweep = known_sweep();
   write_file("points.jsonl", with_identities(input, sweep));
   const testbench::PointStore store(".", "build");
-  testbench::sweep_csv(testbench::sweep_json(sweep, store));
+  testbench::sweep_tables(sweep, testbench::sweep_json(sweep, store));
 }
 
 void read_report(std::string_view input) {

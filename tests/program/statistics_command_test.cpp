@@ -55,6 +55,28 @@ TEST_F(StatisticsCommands, StatsPrintsAndConvertsWhatRenderHasWritten) {
   EXPECT_EQ(read("b.csv").rfind("key,unit,value,meaning\n", 0), 0u);
 }
 
+TEST_F(StatisticsCommands, ComparisonsAreWrittenForMachines) {
+  render({"--stats", "a.json"});
+  ordered_json other = ordered_json::parse(read("a.json"));
+  other["chip"]["pio"]["busy_cycles"] = 1;
+  write("b.json", other.dump());
+  const CommandResult result =
+      run({"compare", "a.json", "b.json", "--junit", "junit.xml", "--json", "moves.json"});
+  EXPECT_EQ(result.exit_code, 1);
+  const ordered_json moves = ordered_json::parse(read("moves.json"));
+  ASSERT_EQ(moves["differences"].size(), 1u);
+  EXPECT_EQ(moves["differences"][0]["key"], "chip.pio.busy_cycles");
+  EXPECT_EQ(moves["differences"][0]["b"], 1);
+  EXPECT_EQ(moves["differences"][0]["unit"], "cycles");
+  const std::string xml = read("junit.xml");
+  EXPECT_NE(xml.find("tests=\"" + std::to_string(moves["compared"].get<int>()) + "\" failures=\"1\""),
+            std::string::npos)
+      << xml.substr(0, 300);
+  EXPECT_NE(xml.find("<testcase classname=\"chip.pio\" name=\"busy_cycles\">\n    <failure message="),
+            std::string::npos);
+  EXPECT_EQ(run({"compare", "a.json", "b.json", "--junit", "a.json"}).exit_code, 2);
+}
+
 TEST_F(StatisticsCommands, NativeStatisticsAreStatisticsToo) {
   render({"--native", "--stats", "a.json"});
   EXPECT_EQ(run({"stats", "a.json"}).exit_code, 0);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -129,6 +130,90 @@ TEST_F(SweepCommand, APointThatFailsIsRecordedAndTheRestRuns) {
   EXPECT_EQ(finished_points("out"), 4u);
   run({"sweep", "s.toml", "-o", "out", "--retry-failed"});
   EXPECT_EQ(finished_points("out"), 6u);
+}
+
+/// Rows of a table: cells by the names of its columns, which must differ.
+std::vector<std::map<std::string, std::string>> rows_of(const Words& lines) {
+  const auto cells = [](const std::string& line) {
+    Words found;
+    std::istringstream text(line);
+    for (std::string cell; std::getline(text, cell, ',');) found.push_back(cell);
+    return found;
+  };
+  const Words names = cells(lines.at(0));
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  std::vector<std::map<std::string, std::string>> rows;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const Words row = cells(lines[i]);
+    rows.emplace_back();
+    for (std::size_t k = 0; k < row.size(); ++k) rows.back()[names.at(k)] = row[k];
+  }
+  return rows;
+}
+
+TEST_F(SweepCommand, ConstraintsAndDerivedColumns) {
+  write("s.toml",
+        kBase +
+            "[constraint]\nsram = \"chip.pes * poly.sram_bytes < 590000\"\n"
+            "time = \"simulated_cycles * (pio.setup_cycles == 9) < 1\"\n"
+            "[derived]\nper_ray = { expression = \"simulated_cycles / rays\", unit = \"cycles/ray\" }\n"
+            "[[axis]]\nchip.pes = [32, 128]\n[[axis]]\npio.setup_cycles = [9, 10]\n");
+  const CommandResult result = run({"sweep", "s.toml", "-o", "out"});
+  EXPECT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_NE(result.out.find("2 points were not run, 1 that were run"), std::string::npos) << result.out;
+  EXPECT_EQ(finished_points("out"), 2u);
+  const auto rows = rows_of(lines("out/sweep.csv"));
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0].at("status"), "unmet");
+  EXPECT_EQ(rows[1].at("status"), "done");
+  EXPECT_EQ(rows[2].at("status"), "excluded");
+  EXPECT_EQ(rows[3].at("status"), "excluded");
+  EXPECT_EQ(rows[2].at("error"), "constraint sram is not met: chip.pes * poly.sram_bytes < 590000");
+  for (const std::size_t run : {0, 1})
+    EXPECT_DOUBLE_EQ(std::stod(rows[run].at("per_ray")),
+                     std::stod(rows[run].at("simulated_cycles")) / std::stod(rows[run].at("rays")));
+}
+
+TEST_F(SweepCommand, ADictionaryHasEveryColumnOnceAndKernelsAreOnRequest) {
+  write("s.toml", kBase + "[[axis]]\nchip.pes = [32]\n[[axis]]\nsamples = [1]\n[derived]\nx = \"rays\"\n");
+  // `samples` may be on an axis only if it is no base value.
+  write("s.toml", std::string(read("s.toml")).erase(read("s.toml").find("samples = 2\n"), 12));
+  ASSERT_EQ(run({"sweep", "s.toml", "-o", "out"}).exit_code, 0);
+  const auto columns_of = [&] {
+    Words names;
+    for (const std::string& line : lines("out/columns.csv")) names.push_back(line.substr(0, line.find(',')));
+    names.erase(names.begin());
+    return names;
+  };
+  const Words columns = columns_of();
+  std::string header;
+  for (const std::string& name : columns) header += (header.empty() ? "" : ",") + name;
+  EXPECT_EQ(lines("out/sweep.csv")[0], header);
+  EXPECT_NE(read("out/columns.csv").find("\nsimulated_seconds,result,s,"), std::string::npos);
+  EXPECT_NE(read("out/columns.csv").find("\nx,derived,,rays\n"), std::string::npos);
+  EXPECT_EQ(header.find(".kernels."), std::string::npos);
+  ASSERT_EQ(run({"sweep", "s.toml", "-o", "out", "--kernels"}).exit_code, 0);
+  EXPECT_GT(columns_of().size(), columns.size() + 50);
+  EXPECT_NE(lines("out/sweep.csv")[0].find(".kernels.intersect.cycles"), std::string::npos);
+}
+
+TEST_F(SweepCommand, ExpressionsThatMeanNothingAreRefused) {
+  const auto refused = [&](const std::string& expression, const std::string& part) {
+    write("s.toml", kBase + "[[axis]]\nchip.pes = [32, 96]\n" + expression + "\n");
+    expect_error({"sweep", "s.toml"}, {"s.toml", part});
+  };
+  refused("[constraint]\na = \"chip.pes = 32\"", "operator \"=\"");
+  refused("[constraint]\na = \"chip.pe < 32\"", "did you mean 'chip.pes'");
+  refused("[constraint]\na = \"chip.pes <\"", "constraint.a");
+  refused("[constraint]\na = \"\"", "constraint.a");
+  refused("[constraint]\na = \"scene > 1\"", "parameters that are numbers");
+  refused("[constraint]\na = \"chip.pes > 1000\"", "no point meets");
+  refused("[constraint]\na = 5", "constraint.a");
+  refused("[derived]\nrays = \"1\"", "name of a result");
+  refused("[derived]\nx = { expression = \"1\", units = \"s\" }", "'units'");
+  write("s.toml", "constraint = 3\n" + kBase + "[[axis]]\nchip.pes = [32, 96]\n");
+  expect_error({"sweep", "s.toml"}, {"s.toml:1", "[constraint]"});
+  EXPECT_EQ(files(), (Words{"s.toml"}));
 }
 
 TEST_F(SweepCommand, NewValuesOfAnAxisAreAllThatIsRun) {

@@ -192,13 +192,17 @@ TEST_F(Golden, TreesHaveATraversalAFormatAndAWidth) {
   EXPECT_NE(value(1, "simulated_cycles"), value(2, "simulated_cycles"));
 }
 
+std::string moves_of(const GoldenTables& kept, const GoldenTables& found) {
+  return testbench::golden_moves(testbench::golden_verdicts(kept, found));
+}
+
 TEST_F(Golden, TablesComeBackAsTheyWereWrittenAndOldOnesGo) {
   const GoldenTables found = run(grid(kHead + kTwoChips), 2);
   ASSERT_EQ(found.size(), 2u);
   ASSERT_EQ(found.at("cornell_box-paper.csv").size(), 8u);
   write("cornell_box-gone.csv", "key,a\n");
   testbench::write_golden(directory_, found);
-  EXPECT_EQ(testbench::golden_moves(testbench::read_golden(directory_), found), "");
+  EXPECT_EQ(moves_of(testbench::read_golden(directory_), found), "");
   EXPECT_FALSE(std::filesystem::exists(directory_ / "cornell_box-gone.csv"));
   EXPECT_EQ(read("cornell_box-csx600.csv").find("\nsimulator."), std::string::npos);
   EXPECT_NE(read("cornell_box-csx600.csv").find("\nchip.control_unit.cycles_by_cause.poly,"),
@@ -215,7 +219,7 @@ TEST_F(Golden, WhatMovedIsNamedWithItsRunsAndDistance) {
   GoldenTables found = kept;
   set(found, 0, "chip.pio.busy_cycles", 2);
   set(found, 3, "chip.pio.busy_cycles", 0.75);
-  const std::string moves = testbench::golden_moves(kept, found);
+  const std::string moves = moves_of(kept, found);
   EXPECT_EQ(
       moves.rfind("  chip.pio.busy_cycles: in 2 of 16 runs  -25 to +50 %; cornell_box-paper segments n0 "
                   "loads lt: ",
@@ -225,16 +229,38 @@ TEST_F(Golden, WhatMovedIsNamedWithItsRunsAndDistance) {
   EXPECT_EQ(std::count(moves.begin(), moves.end(), '\n'), 1);
   found = kept;
   found.at("cornell_box-paper.csv").pop_back();
-  EXPECT_EQ(testbench::golden_moves(kept, found), "  run gone: cornell_box-paper full n2 loads at\n");
-  EXPECT_EQ(testbench::golden_moves(found, kept), "  new run: cornell_box-paper full n2 loads at\n");
+  EXPECT_EQ(moves_of(kept, found), "  run gone: cornell_box-paper full n2 loads at\n");
+  EXPECT_EQ(moves_of(found, kept), "  new run: cornell_box-paper full n2 loads at\n");
+}
+
+TEST_F(Golden, VerdictsAreTestCasesAndJson) {
+  const GoldenTables kept = run(grid(kHead + kOneRun), 1);
+  GoldenTables found = kept;
+  const std::string name = kept.begin()->second[0].first;
+  for (auto& [key, value] : found.begin()->second[0].second)
+    if (key == "chip.pio.busy_cycles") value = 1;
+  found.begin()->second.push_back({"new <run>", kept.begin()->second[0].second});
+  const auto verdicts = testbench::golden_verdicts(kept, found);
+  const std::vector<testbench::TestCase> cases = testbench::golden_cases(verdicts);
+  ASSERT_EQ(cases.size(), 2u);
+  EXPECT_EQ(cases[0].group + ".csv", kept.begin()->first);
+  EXPECT_EQ(cases[0].name, name);
+  EXPECT_NE(cases[0].failure.find("1 counters moved"), std::string::npos) << cases[0].failure;
+  const std::string xml = testbench::junit_xml("golden", cases);
+  EXPECT_NE(xml.find("<testsuite name=\"golden\" tests=\"2\" failures=\"2\">"), std::string::npos) << xml;
+  EXPECT_NE(xml.find("name=\"new &lt;run>\""), std::string::npos) << xml;
+  const auto json = testbench::golden_json(verdicts);
+  EXPECT_EQ(json[0]["moves"][0]["key"], "chip.pio.busy_cycles");
+  EXPECT_EQ(json[0]["moves"][0]["b"], 1);
+  EXPECT_EQ(json[1]["presence"], "only_found");
 }
 
 TEST_F(Golden, RunsEqualWhatAnotherParameterMoves) {
   const GoldenTables kept = run(grid(kHead + kOneRun), 1);
-  EXPECT_EQ(testbench::golden_moves(kept, run(grid(kHead + kOneRun), 1)), "");
+  EXPECT_EQ(moves_of(kept, run(grid(kHead + kOneRun), 1)), "");
   GoldenGrid slower = grid(kHead + kOneRun);
   slower.runs[0].options.chip.pio.setup_cycles += 1;
-  const std::string moves = testbench::golden_moves(kept, run(slower, 1));
+  const std::string moves = moves_of(kept, run(slower, 1));
   EXPECT_NE(moves.find("chip.pio.setup_cycles: in 1 of 1 runs"), std::string::npos) << moves;
   EXPECT_EQ(moves.find("image_sha256"), std::string::npos) << moves;
 }

@@ -118,7 +118,7 @@ class SweepReader {
     const toml::table* const with_unit = node.as_table();
     const toml::node* const text = with_unit != nullptr ? with_unit->get("expression") : &node;
     if (text == nullptr || !text->is_string())
-      refuse(node, key, found_text(node), "\"expression\" or { expression = \"...\", unit = \"...\" }");
+      refuse(node, key, found_text(node), R"("expression" or { expression = "...", unit = "..." })");
     NamedExpression made{name, Expression(**text->as_string(), line_of(sweep_.path, node) + ": " + key), "-"};
     if (with_unit == nullptr) return made;
     for (const auto& [part, value] : *with_unit) {

@@ -94,21 +94,27 @@ bool Sweep::is_parameter(const std::string& key) const {
          std::any_of(base_.begin(), base_.end(), has_key);
 }
 
+double Sweep::parameter_of(const SweepPoint& point, const std::string& key,
+                           const std::vector<Setting>& settings, const RunSettings* render) const {
+  const auto is_key = [&](const Setting& setting) { return setting.key == key; };
+  const auto given = std::find_if(settings.rbegin(), settings.rend(), is_key);
+  const std::string text = render != nullptr          ? testbench::value_of(*render, key)
+                           : given != settings.rend() ? given->value
+                                                      : model::parameter_text(chip_of(point), key);
+  const std::optional<double> number = number_from(text);
+  if (!number)
+    throw InputError("found '" + key + "', which is '" + text + "'; allowed: parameters that are numbers");
+  return *number;
+}
+
 void Sweep::constrain(SweepPoint& point, const std::vector<Setting>& settings,
                       const RunSettings* render) const {
   const auto read = [&](const NamedExpression& named) {
-    for (const std::string& key : named.expression.names()) {
-      if (!is_parameter(key)) continue;
-      const auto is_key = [&](const Setting& setting) { return setting.key == key; };
-      const auto given = std::find_if(settings.rbegin(), settings.rend(), is_key);
-      const std::string text = render != nullptr          ? testbench::value_of(*render, key)
-                               : given != settings.rend() ? given->value
-                                                          : model::parameter_text(chip_of(point), key);
-      const std::optional<double> number = number_from(text);
-      if (!number)
-        throw InputError(named.expression.origin() + ": found '" + key + "', which is '" + text +
-                         "'; allowed: parameters that are numbers");
-      point.parameters[key] = *number;
+    try {
+      for (const std::string& key : named.expression.names())
+        if (is_parameter(key)) point.parameters[key] = parameter_of(point, key, settings, render);
+    } catch (const InputError& error) {
+      throw InputError(named.expression.origin() + ": " + error.what());
     }
   };
   for (const NamedExpression& derived : expressions_.derived) read(derived);

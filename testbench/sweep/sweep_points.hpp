@@ -79,6 +79,8 @@ class Sweep {
   /// Loads the firmwares that the file names and checks every value of their options.
   void load_libraries(const SweepFile& file);
   SweepPoint make_point(const SweepFile& file, std::uint64_t number);
+  double parameter_of(const SweepPoint& point, const std::string& key, const std::vector<Setting>& settings,
+                      const RunSettings* render) const;
   /// Reads the parameters that the expressions name, and says whether the point is to be left out.
   void constrain(SweepPoint& point, const std::vector<Setting>& settings, const RunSettings* render) const;
   /// @param given options of the firmware that the sweep sets; the others are chosen

@@ -198,6 +198,17 @@ void put_tail(MonoImage& image, std::size_t triangle, int place, const Tail& tai
               sizeof(tail));
 }
 
+/// The record that put_tail() wrote; a new one if the scene's surfaces have none.
+template <class Tail>
+Tail get_tail(const MonoImage& image, std::size_t triangle, int place) {
+  Tail tail;
+  if (place == path_tracer::RecordSizes::kNone) return tail;
+  const std::uint64_t surface = triangle * std::uint64_t(image.layout.sizes.surface);
+  std::memcpy(&tail, image.bytes.data() + image.layout.surfaces.address + surface + std::uint64_t(place),
+              sizeof(tail));
+  return tail;
+}
+
 /// The normal at the corners as an affine function of the position.
 path_tracer::NormalRecord normal_record(const Scene& scene, std::size_t index) {
   const Triangle& triangle = scene.triangles[index];
@@ -282,7 +293,32 @@ void put_shading_kinds(MonoImage& image, const Scene& scene, const std::vector<M
              path_tracer::ShadingKindRecord{kinds[std::size_t(scene.triangles[i].material)]});
 }
 
-/// What light paths need of the scene besides its lights.
+/// Whether light paths begin at the triangle, if it emits: where they leave it, nothing looks up textures.
+/// Other lights are found by hits and by connections to their points, whose weights know that
+/// (begins_light_paths() of the firmware).
+bool may_begin_light_paths(const MonoImage& image, std::size_t triangle) {
+  const path_tracer::RecordSizes& sizes = image.layout.sizes;
+  for (const auto slot : {path_tracer::TextureSlot::emission, path_tracer::TextureSlot::alpha})
+    if (get_tail<path_tracer::TextureRecord>(image, triangle, sizes.texture[int(slot)]).footprints != 0)
+      return false;
+  return get_tail<path_tracer::CoverageRecord>(image, triangle, sizes.coverage).alpha == 1.0;
+}
+
+/// The density by which connections find the disk of a sun; 0 of one that emits nothing.
+double pdf_of_sun(const path_tracer::SunRecord& sun, const Lights& lights) {
+  constexpr double kSameAngle = 1e-9;
+  const auto is_of_sun = [&](const path_tracer::LightRecord& light) {
+    return light.shape == static_cast<std::int32_t>(path_tracer::LightShape::distant) &&
+           std::abs(light.edge2.x - (1.0 - sun.cosine)) <= kSameAngle * light.edge2.x + 1e-15 &&
+           light.normal.x == sun.direction.x && light.normal.y == sun.direction.y &&
+           light.normal.z == sun.direction.z;
+  };
+  const auto light = std::find_if(lights.records.begin(), lights.records.end(), is_of_sun);
+  if (light == lights.records.end()) return 0;
+  return 1.0 / (2.0 * glm::pi<double>() * light->edge2.x * light->inverse_pdf);
+}
+
+/// What light paths need of the scene besides its lights; once surfaces are written.
 void put_light_paths(MonoImage& image, const Triangles& triangles, const std::vector<Material>& materials,
                      const Lights& lights) {
   const Surround surround = surround_of(triangles.scene);
@@ -291,10 +327,18 @@ void put_light_paths(MonoImage& image, const Triangles& triangles, const std::ve
   for (std::size_t light = 0; light < lights.records.size(); ++light) {
     const std::vector<std::size_t>& of_light = lights.triangles[light];
     if (of_light.empty()) continue;
+    const bool begins = std::all_of(of_light.begin(), of_light.end(), [&](std::size_t triangle) {
+      return may_begin_light_paths(image, triangle);
+    });
     const std::int32_t material = triangles.scene.triangles[of_light.front()].material;
-    const path_tracer::LightEmissionRecord emission{to_record(materials[std::size_t(material)].emission)};
+    path_tracer::LightEmissionRecord emission;
+    if (begins) emission.radiance = to_record(materials[std::size_t(material)].emission);
     put(image, image.layout.light_emission + light, &emission, 1);
+    image.layout.has_silent_lights = image.layout.has_silent_lights || !begins;
   }
+  std::vector<double> sun_pdfs;
+  for (const path_tracer::SunRecord& sun : lights.suns) sun_pdfs.push_back(pdf_of_sun(sun, lights));
+  put(image, image.layout.sun_pdfs, sun_pdfs.data(), sun_pdfs.size());
 }
 
 /// Texels of the environment's image, and suns.
@@ -311,24 +355,6 @@ void put_outside(MonoImage& image, const Environment& environment, const Lights&
       lights.environment_texels.data(), lights.environment_texels.size());
 }
 
-/// Refuses what bidirectional paths do not render.
-void require_bidirectional_scene(const Scene& scene, const path_tracer::Features& features) {
-  const auto refuse = [&](const std::string& found, const std::string& allowed) {
-    throw InputError(scene.name + ": paths bidirectional: found " + found + "; allowed " + allowed +
-                     ", or paths unidirectional");
-  };
-  if (features.coverage)
-    refuse("a surface that lets rays through by its alpha", "are alpha 1 and alphaMode OPAQUE");
-  if (features.textures.has(path_tracer::TextureSlot::emission))
-    refuse("a texture of emission", "is emission of one colour");
-  const bool has_disk = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
-    return light.kind == LightKind::sun && light.angular_diameter_radians > 0.0;
-  });
-  if (has_disk && (features.lobes.smooth_specular() || features.lobes.coat))
-    refuse("a sun with a disk beside mirrors, clear glass or a clear coat",
-           "is a sun of angular_diameter_degrees 0");
-}
-
 }  // namespace
 
 MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::ProgramConfig& options,
@@ -336,7 +362,6 @@ MonoImage make_mono_image(const Scene& scene, int num_pes, const path_tracer::Pr
   const ShownMaterials shown = shown_materials(scene, options);
   path_tracer::ProgramConfig config = options;
   config.features = features_of(scene, shown.materials, options);
-  if (config.is_bidirectional()) require_bidirectional_scene(scene, config.features);
   const Triangles triangles(scene);
   const Lights lights = make_lights(scene, triangles.faces, config.light_sampling, survey);
   const double reach = reach_of(scene, config.is_bidirectional());

@@ -55,6 +55,11 @@ Span span_of(const Direction3& whole) {
   return {whole * (1.0 / length), length};
 }
 
+/// Whether light paths begin at a light that has triangles.
+mask emits(const PolyPointer<LightEmissionRecord>& emission) {
+  return largest_channel(emission.get(&LightEmissionRecord::radiance)) > 0.0;
+}
+
 /// Light path to lens.
 void connect_to_lens(const ConnectArguments& arguments, const PathVertex& near, Connection& connection) {
   const Lens& lens = arguments.world.lens;
@@ -83,7 +88,11 @@ void connect_to_light(const ConnectArguments& arguments, const PathVertex& near,
   const mask both_sides = passes_light(config.lobes, near.material);
   const Direction3& to_previous = near.to_previous;
   const Direction3 normal = cn::select(dot(near.normal, to_previous) > 0.0, near.normal, near.normal * -1.0);
-  const SampledLight light = sample_light_from(arguments, near.position, normal, both_sides);
+  SampledLight light = sample_light_from(arguments, near.position, normal, both_sides);
+  if (arguments.world.has_silent_lights) {
+    const mask is_silent = (arguments.light.get(&LightRecord::face) >= 0) & !emits(arguments.emission);
+    light.emission_density.assign_all_lanes(cn::select(is_silent, poly<double>(0.0), light.emission_density));
+  }
   const Scattering scattering = scatter_between(config, near, to_previous, light.to_light);
   const poly<double> light_side = squared(scattering.pdf_to_light * light.hit_ratio);
   const poly<double> eye_side = eye_side_sum(arguments, near, light.emission_density, scattering.pdf_to_eye,
@@ -92,7 +101,9 @@ void connect_to_light(const ConnectArguments& arguments, const PathVertex& near,
   connection.direction = light.whole;
   connection.contribution = throughput * scattering.value;
   connection.target_face = arguments.light.get(&LightRecord::face);
-  connection.searched_face = cn::max(connection.target_face, poly<std::int32_t>(kNoFace));
+  connection.searched_face = arguments.features.coverage
+                                 ? poly<std::int32_t>(kNoFace)  // what is passed does not end the search
+                                 : cn::max(connection.target_face, poly<std::int32_t>(kNoFace));
   if (arguments.is_in_layers)
     connection.target_light = light_number(arguments.light_place.read(), arguments.lights);
 }
@@ -153,9 +164,16 @@ mask connect_vertices(const ConnectArguments& arguments, const poly<std::int32_t
   const mask brings_nothing = !(largest_channel(connection.contribution) > 0.0);
   const mask culled = to_light & brings_nothing & (pair.get(&PairRecord::goes_on) != 0);
   cn::keep(culled, *arguments.is_culled);
-  cn::keep(to_lens, *arguments.to_lens);
-  cn::keep(to_vertex, *arguments.to_vertex);
   return (to_lens | to_light | to_vertex) & !culled;
+}
+
+/// What is left of a connection's ray behind a surface that let it through.
+void go_on_behind(const ConnectArguments& arguments) {
+  const PolyPointer<PassingRecord> passing = passing_of(arguments.pair, arguments.pair_sizes);
+  arguments.ray.set(&RayRecord::origin, passing.get(&PassingRecord::origin));
+  arguments.ray.set(&RayRecord::direction, passing.get(&PassingRecord::direction));
+  arguments.ray.set(&RayRecord::left_face, passing.get(&PassingRecord::face));
+  arguments.ray.set(&RayRecord::light_face, poly<std::int32_t>(kNoFace));
 }
 
 void begin_light_path(const ConnectArguments& arguments) {
@@ -204,20 +222,48 @@ void begin_eye_path(const ConnectArguments& arguments) {
   Window(pair, arguments.pair_sizes, arguments.world.light_vertices).clear();
 }
 
+/// The light paths that begin. Where a light has none, the eye path begins at once.
+mask begin_paths(const ConnectArguments& arguments, const poly<std::int32_t>& ray) {
+  mask starts_light = is_ray(ray, PairRay::light_start);
+  mask starts_eye = is_ray(ray, PairRay::eye_start);
+  if (arguments.world.has_silent_lights) {
+    const mask is_silent =
+        starts_light & (arguments.light.get(&LightRecord::face) >= 0) & !emits(arguments.emission);
+    starts_light = starts_light & !is_silent;
+    starts_eye = starts_eye | is_silent;
+  }
+  cn::poly_if_any(starts_light, [&] { begin_light_path(arguments); });
+  cn::poly_if_any(starts_eye, [&] { begin_eye_path(arguments); });
+  if (arguments.features.coverage)
+    cn::poly_if_any(starts_light | starts_eye, [&] { forget_passing(arguments.pair, arguments.pair_sizes); });
+  return starts_light;
+}
+
+/// @return where the ray is that of a connection
+mask connect_or_go_on(const ConnectArguments& arguments, const poly<std::int32_t>& ray) {
+  const mask to_lens = is_ray(ray, PairRay::lens);
+  const mask to_vertex = is_ray(ray, PairRay::light_vertex);
+  const mask wants = to_lens | to_vertex | is_ray(ray, PairRay::light_sample);
+  const mask is_behind = wants & has_passed(arguments.pair, arguments.pair_sizes);
+  poly<std::int32_t> connects = 0;
+  cn::poly_if_any(wants & !is_behind, [&] {
+    connects = cn::select(connect_vertices(arguments, ray), poly<std::int32_t>(1), poly<std::int32_t>(0));
+  });
+  cn::keep(to_lens, *arguments.to_lens);
+  cn::keep(to_vertex, *arguments.to_vertex);
+  if (!arguments.features.coverage) return connects != 0;
+  cn::poly_if_any(is_behind, [&] {
+    go_on_behind(arguments);
+    connects = 1;
+  });
+  return connects != 0;
+}
+
 void connect(const ConnectArguments& arguments) {
   const PolyPointer<PairRecord>& pair = arguments.pair;
   const poly<std::int32_t> ray = pair.get(&PairRecord::ray);
-  const mask starts_light = is_ray(ray, PairRay::light_start);
-  const mask starts_eye = is_ray(ray, PairRay::eye_start);
-  cn::poly_if_any(starts_light, [&] { begin_light_path(arguments); });
-  cn::poly_if_any(starts_eye, [&] { begin_eye_path(arguments); });
-  const mask wants =
-      is_ray(ray, PairRay::lens) | is_ray(ray, PairRay::light_sample) | is_ray(ray, PairRay::light_vertex);
-  poly<std::int32_t> connects = 0;
-  cn::poly_if_any(wants, [&] {
-    connects = cn::select(connect_vertices(arguments, ray), poly<std::int32_t>(1), poly<std::int32_t>(0));
-  });
-  const mask is_connection = connects != 0;
+  const mask starts_light = begin_paths(arguments, ray);
+  const mask is_connection = connect_or_go_on(arguments, ray);
   cn::keep(is_connection, *arguments.connects);
   const mask of_light = starts_light | is_ray(ray, PairRay::light_segment);
   cn::keep(of_light, *arguments.of_light);

@@ -33,7 +33,7 @@ void ConnectionStage::load(std::uint64_t step, int block) {
                             block_of(context_.layout.pair_bin, block, pairs_.sizes.pair), lanes);
   };
   load_pairs(pairs_.sizes.pair, pairs.needs_segment);
-  load_pairs(kPairBytesOfConnections, pairs.occupied.without(pairs.needs_segment));
+  load_pairs(pairs_.sizes.pair_of_connection, pairs.occupied.without(pairs.needs_segment));
   const auto gather = [&](cn::PolySpan span, PolyField<MonoAddress> place, const LaneMask& needed) {
     context_.loads.copy_m2p(step, block, span, context_.machine.places_in(place), needed);
   };
@@ -106,7 +106,7 @@ void ConnectionStage::save(std::uint64_t step, int block) {
                             with_tail(from.pair, bytes), lanes);
   };
   save_pairs(pairs_.sizes.pair, pairs.starts);
-  save_pairs(kPairBytesOfConnections, pairs.occupied.without(pairs.starts));
+  save_pairs(pairs_.sizes.pair_of_connection, pairs.occupied.without(pairs.starts));
   rays_.save(context_.saves, step, {block}, from.ray, bin_block(block).light_place, pairs.occupied);
 }
 

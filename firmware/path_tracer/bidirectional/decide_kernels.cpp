@@ -2,6 +2,7 @@
 
 #include "firmware/path_tracer/bidirectional/pair_kernels.hpp"
 #include "firmware/path_tracer/bidirectional/path_vertex.hpp"
+#include "firmware/path_tracer/kernels/coverage.hpp"
 
 namespace path_tracer {
 namespace {
@@ -41,11 +42,55 @@ Rgb radiance_at_light(const SeeArguments& arguments, const mask& to_light) {
   return radiance;
 }
 
+/// Where the surface that a connection's ray hit lets it through. Each kind of connection has numbers of its
+/// own, so that no path depends on what another one found.
+mask lets_connection_through(const SeeArguments& arguments) {
+  const PolyPointer<PairRecord>& pair = arguments.pair;
+  const auto chance = [&] {
+    const poly<std::int32_t> ray = pair.get(&PairRecord::ray);
+    const mask to_vertex = is_ray(ray, PairRay::light_vertex);
+    const poly<std::int32_t> depth = pair.get(&PairRecord::depth);
+    const poly<std::int32_t> of_vertices = depth * kMaxLightVertices + pair.get(&PairRecord::target);
+    const poly<std::uint32_t> purpose =
+        cn::select(to_vertex, word_of(Purpose::light_vertex_coverage),
+                   cn::select(is_ray(ray, PairRay::lens), word_of(Purpose::lens_coverage),
+                              word_of(Purpose::light_sample_coverage)));
+    return coverage_number(arguments.sampler, arguments.seed, pair.get(&PairRecord::pixel),
+                           pair.get(&PairRecord::sample), cn::select(to_vertex, of_vertices, depth),
+                           arguments.surface.get(&SurfaceRecord::face), purpose);
+  };
+  return (arguments.hit.get(&HitRecord::hit) != 0) &
+         lets_through(arguments.features, arguments.sizes, arguments.surface, arguments.look_ups,
+                      arguments.hit.get(&HitRecord::front) != 0, chance);
+}
+
+/// Lets connections go on that a surface lets through before their end.
+/// @param at_end where nothing else is in between
+/// @return where they are at their end, and a light is there
+mask pass_connections_on(const SeeArguments& arguments, const mask& at_end) {
+  const PolyPointer<PairRecord>& pair = arguments.pair;
+  const mask passes = lets_connection_through(arguments);
+  const poly<std::int32_t> target = pair.get(&PairRecord::target_face);
+  const auto arrival = tail<ArrivalRecord>(arguments.hit);
+  const mask ends_near = target == poly<std::int32_t>(kNoFace);
+  const poly<double> rest =
+      cn::select(ends_near, 1.0 - arrival.get(&ArrivalRecord::distance), poly<double>(1.0));
+  const PolyPointer<PassingRecord> passing = passing_of(pair, arguments.pair_sizes);
+  passing.set(&PassingRecord::origin, arguments.hit.get(&HitRecord::position));
+  passing.set(&PassingRecord::direction, arrival.get(&ArrivalRecord::direction) * rest);
+  passing.set(&PassingRecord::face, arguments.surface.get(&SurfaceRecord::face));
+  passing.set(&PassingRecord::passes,
+              cn::select(passes & !at_end, poly<std::int32_t>(1), poly<std::int32_t>(0)));
+  const mask is_no_light = is_ray(pair.get(&PairRecord::ray), PairRay::light_sample) & (target >= 0) & passes;
+  return at_end & !is_no_light;
+}
+
 void see(const SeeArguments& arguments) {
   const PolyPointer<PairRecord>& pair = arguments.pair;
   const poly<std::int32_t> ray = pair.get(&PairRecord::ray);
   const mask to_lens = is_ray(ray, PairRay::lens);
-  const mask sees = is_unblocked(arguments);
+  mask sees = is_unblocked(arguments);
+  if (arguments.features.coverage) sees = pass_connections_on(arguments, sees);
   const Rgb light =
       pair.get(&PairRecord::contribution) * radiance_at_light(arguments, is_ray(ray, PairRay::light_sample));
   const poly<double> zero = 0.0;
@@ -68,7 +113,8 @@ poly<std::int32_t> first_connection(const poly<std::uint32_t>& bits, int none) {
   return first;
 }
 
-void decide(const DecideArguments& arguments) {
+/// What slots do next whose ray has ended.
+void decide_next(const DecideArguments& arguments) {
   const PolyPointer<PairRecord>& pair = arguments.pair;
   const int kept = arguments.light_vertices;
   const auto number_of = [](PairRay ray) { return poly<std::int32_t>(static_cast<std::int32_t>(ray)); };
@@ -97,6 +143,14 @@ void decide(const DecideArguments& arguments) {
   cn::keep(ended, *arguments.ended);
 }
 
+void decide(const DecideArguments& arguments) {
+  if (arguments.pair_sizes.passing == 0) {
+    decide_next(arguments);
+  } else {
+    cn::poly_if(!has_passed(arguments.pair, arguments.pair_sizes), [&] { decide_next(arguments); });
+  }
+}
+
 void begin_pair(const BeginPairArguments& arguments) {
   const PolyPointer<PairRecord>& pair = arguments.pair;
   const poly<std::int32_t> number = arguments.number.read();
@@ -118,9 +172,15 @@ void locate_far(const LocateFarArguments& arguments) {
   const poly<std::int32_t> ray = pair.get(&PairRecord::ray);
   const int kept = arguments.light_vertices;
   const poly<std::int32_t> first = cn::pe_num() * (kept + 1);
-  const mask to_lens = is_ray(ray, PairRay::lens);
-  const mask to_light = is_ray(ray, PairRay::light_sample);
-  const mask to_vertex = is_ray(ray, PairRay::light_vertex);
+  mask to_lens = is_ray(ray, PairRay::lens);
+  mask to_light = is_ray(ray, PairRay::light_sample);
+  mask to_vertex = is_ray(ray, PairRay::light_vertex);
+  if (arguments.pair_sizes.passing != 0) {
+    const mask is_new = !has_passed(pair, arguments.pair_sizes);
+    to_lens = to_lens & is_new;
+    to_light = to_light & is_new;
+    to_vertex = to_vertex & is_new;
+  }
   const mask starts = is_ray(ray, PairRay::light_start);
   const auto bytes = std::size_t(arguments.vertex_bytes);
   const poly<std::int32_t> newest =
@@ -133,7 +193,7 @@ void locate_far(const LocateFarArguments& arguments) {
   cn::keep(starts | is_ray(ray, PairRay::eye_start), *arguments.starts);
   cn::keep(to_vertex, *arguments.needs_far);
   cn::keep(to_light | starts, *arguments.needs_light);
-  cn::keep(starts, *arguments.needs_emission);
+  cn::keep(arguments.has_silent_lights ? to_light | starts : starts, *arguments.needs_emission);
   if (arguments.light_table.cdf == nullptr) return;
   const LightNumbers numbers =
       light_numbers(arguments.sampler, arguments.seed, pair.get(&PairRecord::pixel),

@@ -34,6 +34,15 @@ inline double disk_pdf(const PairWorld& world) {
   return 1.0 / (kPi * world.radius * world.radius);
 }
 
+/// Density of directions by which connections find the disk of a sun; infinity of parallel light.
+inline poly<double> disk_density(const PolyPointer<LightRecord>& light) {
+  const poly<double> width = light.get(&LightRecord::edge2).x;  // 1 - cosine
+  const mask is_disk = width > 0.0;
+  const poly<double> solid_angle = cn::select(is_disk, width, poly<double>(1.0)) * (2.0 * kPi);
+  return cn::select(is_disk, 1.0 / (solid_angle * light.get(&LightRecord::inverse_pdf)),
+                    poly<double>(kInfinity));
+}
+
 /// A point of a light, as a vertex of an eye path samples it.
 struct SampledLight {
   Direction3 to_light;  ///< of unit length
@@ -73,7 +82,11 @@ inline SampledLight sample_light_from(const ConnectArguments& arguments, const P
     if (lights.points)
       take_where(LightShape::point, [&] { return sample_point_light(light, position, normal); });
     if (lights.distant)
-      take_where(LightShape::distant, [&] { return sample_distant_light(light, normal, u, v); });
+      take_where(LightShape::distant, [&] {
+        ShapeSample sample = sample_distant_light(light, normal, u, v);
+        sample.pdf.assign_all_lanes(disk_density(light));
+        return sample;
+      });
     if (lights.environment)
       take_where(LightShape::environment,
                  [&] { return sample_environment(light, arguments.image, normal, u, v); });
@@ -193,7 +206,8 @@ inline LightStart start_at_light(const ConnectArguments& arguments) {
   const Direction3 any{0.0, 0.0, 1.0};
   if (lights.distant)
     take_where(LightShape::distant, [&] {
-      return start_far_away(arguments, sample_distant_light(light, any, u, v), direction, 0.0);
+      return start_far_away(arguments, sample_distant_light(light, any, u, v), direction,
+                            squared(1.0 / disk_density(light)));
     });
   if (lights.environment)
     take_where(LightShape::environment, [&] {

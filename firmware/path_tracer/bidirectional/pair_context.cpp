@@ -10,6 +10,7 @@ PairWorld make_world(const StageContext& context) {
   world.radius = context.layout.radius;
   world.light_vertices = context.config.light_vertices;
   world.has_lights = context.layout.light_count > 0;
+  world.has_silent_lights = context.layout.has_silent_lights;
   return world;
 }
 

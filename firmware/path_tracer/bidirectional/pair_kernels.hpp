@@ -14,6 +14,7 @@ struct PairWorld {
   double radius = 0;
   int light_vertices = 1;  ///< that a slot keeps, at most
   bool has_lights = false;
+  bool has_silent_lights = false;  ///< lights from which no light path begins
 };
 
 /// Vertex stage, segments: the vertex that the segment has found, and the next segment.
@@ -21,7 +22,8 @@ struct PairWorld {
 struct ReachArguments : ShadeArguments {
   PairWorld world;
   PairSizes pair_sizes{Features{}, 1};
-  PolyPointer<PairRecord> pair;  ///< changed in place
+  const double* sun_pdfs = nullptr;  ///< by which connections find the suns
+  PolyPointer<PairRecord> pair;      ///< changed in place
   PolyPointer<LightHeadRecord> heads;
   PolyPointer<PathVertexRecord> vertex;
   PolyPointer<LightHeadRecord> head;
@@ -41,6 +43,9 @@ struct SeeArguments {
   Features features;
   RecordSizes sizes{Features{}};
   bool is_in_layers = false;
+  Sampler sampler = Sampler::philox;
+  std::uint64_t seed = 0;
+  PairSizes pair_sizes{Features{}, 1};
   PolyPointer<PairRecord> pair;  ///< changed in place
   PolyPointer<RadianceRecord> result;
   LaneMask* is_result = nullptr;  ///< reached the lens
@@ -48,6 +53,7 @@ struct SeeArguments {
 
 /// Vertex stage, at its end: what each slot does next.
 struct DecideArguments {
+  PairSizes pair_sizes{Features{}, 1};
   PolyPointer<PairRecord> pair;  ///< changed in place
   int light_vertices = 1;
   PolyPointer<RadianceRecord> result;
@@ -68,6 +74,8 @@ struct BeginPairArguments {
 
 /// Vertex stage: what the next ray needs besides its slot's records.
 struct LocateFarArguments {
+  PairSizes pair_sizes{Features{}, 1};
+  bool has_silent_lights = false;
   PolyPointer<PairRecord> pair;  ///< gets the point of the light
   LightTable light_table;
   MonoAddress lights = 0;

@@ -38,6 +38,23 @@ inline mask is_ray(const poly<std::int32_t>& ray, PairRay wanted) {
   return ray == poly<std::int32_t>(static_cast<std::int32_t>(wanted));
 }
 
+inline PolyPointer<PassingRecord> passing_of(const PolyPointer<PairRecord>& pair, const PairSizes& sizes) {
+  return tail<PassingRecord>(pair, sizes.passing);
+}
+
+/// Where a surface has let the slot's ray through. Scenes without coverage do not ask.
+inline mask has_passed(const PolyPointer<PairRecord>& pair, const PairSizes& sizes) {
+  if (sizes.passing == 0) return mask(cn::mask_from_bits(0));
+  return passing_of(pair, sizes).get(&PassingRecord::passes) != 0;
+}
+
+/// The slot's next ray begins at a vertex.
+inline void forget_passing(const PolyPointer<PairRecord>& pair, const PairSizes& sizes) {
+  const PolyPointer<PassingRecord> passing = passing_of(pair, sizes);
+  passing.set(&PassingRecord::distance, poly<double>(0.0));
+  passing.set(&PassingRecord::passes, poly<std::int32_t>(0));
+}
+
 inline poly<double> one_or_none(const mask& condition) {
   return cn::select(condition, poly<double>(1.0), poly<double>(0.0));
 }

@@ -14,7 +14,8 @@ struct Arrival {
   mask front;
   Point3 position;
   Direction3 direction;
-  poly<double> distance;
+  poly<double> distance;  ///< from where the ray began, which may be a surface that let it through
+  poly<double> whole;     ///< from the vertex before
   Rgb let_through;
   poly<double> distance_squared;  ///< of weights.hpp
   poly<double> inverse_pdf;
@@ -40,9 +41,13 @@ Arrival arrive(const ReachArguments& arguments) {
   arrival.distance.assign_all_lanes(record.get(&ArrivalRecord::distance));
   bsdf_detail::assign(arrival.let_through,
                       share_let_through(arguments, arrival.is_light, arrival.front, arrival.distance));
+  arrival.whole.assign_all_lanes(arrival.distance);
+  if (arguments.features.coverage)
+    arrival.whole.assign_all_lanes(
+        arrival.distance + passing_of(arguments.pair, arguments.pair_sizes).get(&PassingRecord::distance));
   const mask parallel = arguments.pair.get(&PairRecord::is_parallel) != 0;
   arrival.distance_squared.assign_all_lanes(
-      cn::select(parallel, poly<double>(1.0), arrival.distance * arrival.distance));
+      cn::select(parallel, poly<double>(1.0), arrival.whole * arrival.whole));
   arrival.inverse_pdf.assign_all_lanes(
       bounded(arrival.distance_squared / arguments.pair.get(&PairRecord::pdf)));
   bsdf_detail::assign(arrival.normal, arguments.surface.get(&SurfaceRecord::normal));
@@ -63,6 +68,21 @@ poly<double> weight_of_light_hit(const ReachArguments& arguments, const poly<dou
   return cn::select(sees_lens, poly<double>(1.0), 1.0 / (1.0 + sum));
 }
 
+/// Whether light paths begin at the surface, if it emits (may_begin_light_paths() of the host).
+mask begins_light_paths(const ReachArguments& arguments) {
+  mask begins(cn::mask_from_bits(0xff));
+  if (!arguments.world.has_silent_lights) return begins;
+  const auto has_texture = [&](TextureSlot slot) {
+    const auto record = tail<TextureRecord>(arguments.surface, arguments.sizes.texture[int(slot)]);
+    return record.get(&TextureRecord::footprints) != poly<MonoAddress>(MonoAddress{0});
+  };
+  for (const TextureSlot slot : {TextureSlot::emission, TextureSlot::alpha})
+    if (arguments.features.textures.looks_up(slot)) begins = begins & !has_texture(slot);
+  if (!arguments.features.coverage) return begins;
+  const auto coverage = tail<CoverageRecord>(arguments.surface, arguments.sizes.coverage);
+  return begins & (coverage.get(&CoverageRecord::alpha) == 1.0);
+}
+
 /// Radiance of what an eye path has hit.
 Rgb emitted(const ReachArguments& arguments, const Arrival& arrival) {
   const Rgb emission = emission_at_hit(arguments.surface, arguments.sizes, arguments.look_ups);
@@ -72,23 +92,29 @@ Rgb emitted(const ReachArguments& arguments, const Arrival& arrival) {
   const poly<double> cosine = cn::max(-dot(arrival.direction, arrival.normal), poly<double>(kLeastCosine));
   const poly<double> inverse_pdf =
       tail<AimRecord>(arguments.surface, arguments.sizes.aim).get(&AimRecord::inverse_pdf);
+  const poly<double> emission_pdf =
+      cn::select(begins_light_paths(arguments), cosine * (1.0 / kPi), poly<double>(0.0));
   const poly<double> weight = weight_of_light_hit(arguments, arrival.inverse_pdf, arrival.distance_squared,
-                                                  1.0 / (inverse_pdf * cosine), cosine * (1.0 / kPi));
+                                                  1.0 / (inverse_pdf * cosine), emission_pdf);
   return cn::select(emits, emission * weight, none);
 }
 
-/// Suns that an eye path sees. Where connections find them, hits do not: a disk so small is hardly ever hit.
+/// Suns that an eye path sees. The disk of a sun is found as the texels of an environment's image are.
 Rgb pair_radiance_of_suns(const ReachArguments& arguments, const Arrival& arrival) {
   Rgb sum{0.0, 0.0, 0.0};
+  const poly<double> one = 1.0;
+  const double disk_pdf = 1.0 / (kPi * arguments.world.radius * arguments.world.radius);
+  const poly<double> inverse_pdf = bounded(one / arguments.pair.get(&PairRecord::pdf));
   for (int i = 0; i < arguments.sun_count; ++i) {
     const SunRecord& sun = arguments.suns[i];
-    cn::issue(cn::InstructionClass::mono, 7);
-    cn::poly_if(along_axis(arrival.direction, sun.direction) >= sun.cosine, [&] {
-      sum = sum + Rgb{sun.radiance.x, sun.radiance.y, sun.radiance.z};
+    cn::issue(cn::InstructionClass::mono, 8);
+    cn::poly_if_any(along_axis(arrival.direction, sun.direction) >= sun.cosine, [&] {
+      const poly<double> weight =
+          weight_of_light_hit(arguments, inverse_pdf, one, poly<double>(arguments.sun_pdfs[i]), disk_pdf);
+      sum = sum + Rgb{sun.radiance.x, sun.radiance.y, sun.radiance.z} * weight;
     });
   }
-  const mask counts = arguments.pair.get(&PairRecord::depth) == 0;
-  return cn::select(counts, sum, Rgb{0.0, 0.0, 0.0});
+  return sum;
 }
 
 /// Radiance of what an eye path sees that has hit nothing.
@@ -332,8 +358,9 @@ void write_way_on(const ReachArguments& arguments, const Arrival& arrival, const
   pair.set(&PairRecord::absorption, cn::select(behind, vertex.absorption, Rgb{none, none, none}));
 }
 
-void reach(const ReachArguments& arguments) {
-  const Arrival arrival = arrive(arguments);
+/// The surface is where the segment hit it, or there is none: a vertex, or the end of the path.
+void end_segment(const ReachArguments& arguments, const Arrival& arrival) {
+  if (arguments.features.coverage) forget_passing(arguments.pair, arguments.pair_sizes);
   advance_sums(arguments, arrival);
   const Rgb throughput = arriving_throughput(arguments, arrival);
   cn::poly_if_any(!arrival.is_light, [&] { add_radiance(arguments, arrival, throughput); });
@@ -357,6 +384,42 @@ void reach(const ReachArguments& arguments) {
   cn::keep(arrival.hit, *arguments.is_vertex);
   cn::keep(arrival.hit & arrival.is_light, *arguments.is_light_vertex);
   observe_lobes(bsdf, arrival.front, arrival.hit, *arguments.lobe_use);
+}
+
+/// Where the surface that a segment hit lets it through.
+mask lets_segment_through(const ReachArguments& arguments, const Arrival& arrival) {
+  const PolyPointer<PairRecord>& pair = arguments.pair;
+  const auto chance = [&] {
+    return coverage_number(
+        arguments.sampler, arguments.seed, pair.get(&PairRecord::pixel), pair.get(&PairRecord::sample),
+        pair.get(&PairRecord::depth), arguments.surface.get(&SurfaceRecord::face),
+        cn::select(arrival.is_light, word_of(Purpose::light_coverage), word_of(Purpose::coverage)));
+  };
+  return arrival.hit & lets_through(arguments.features, arguments.sizes, arguments.surface,
+                                    arguments.look_ups, arrival.front, chance);
+}
+
+/// The segment goes straight on: no vertex, and its densities are those of the whole.
+void pass_segment_on(const ReachArguments& arguments, const Arrival& arrival) {
+  const PolyPointer<PairRecord>& pair = arguments.pair;
+  pair.set(&PairRecord::position, arrival.position);
+  pair.set(&PairRecord::face, arguments.surface.get(&SurfaceRecord::face));
+  if (arguments.features.lobes.absorption)
+    pair.set(&PairRecord::throughput, pair.get(&PairRecord::throughput) * arrival.let_through);
+  const auto passing = passing_of(pair, arguments.pair_sizes);
+  passing.set(&PassingRecord::distance, arrival.whole);
+  passing.set(&PassingRecord::passes, poly<std::int32_t>(1));
+}
+
+void reach(const ReachArguments& arguments) {
+  const Arrival arrival = arrive(arguments);
+  if (!arguments.features.coverage) {
+    end_segment(arguments, arrival);
+    return;
+  }
+  const mask passes = lets_segment_through(arguments, arrival);
+  cn::poly_if_any(passes, [&] { pass_segment_on(arguments, arrival); });
+  cn::poly_if(!passes, [&] { end_segment(arguments, arrival); });
 }
 
 }  // namespace

@@ -83,18 +83,22 @@ void VertexStage::load(std::uint64_t step, int block) {
                             block_of(context_.layout.pair_bin, block, pairs_.sizes.pair), lanes);
   };
   load_pairs(pairs_.sizes.pair, bin.segments());
-  load_pairs(kPairBytesOfConnections, bin.shadow);
+  load_pairs(pairs_.sizes.pair_of_connection, bin.shadow);
   load_block(step, block, to.heads, context_.layout.light_heads, eye_hits(block), pairs_.sizes.heads);
 }
 
-/// A connection needs of what it hit only the face, and a light's emission; one to the lens needs nothing.
+/// A connection needs of what it hit only the face, and a light's emission; one to the lens needs nothing. In
+/// scenes with coverage each needs it.
 void VertexStage::load_hit_surfaces(std::uint64_t step, int block) {
   const Loads to = loads(step);
   const Bins::Block& bin = bin_block(block);
   const PairContext::Block& pairs = pairs_.block(block);
   Bins::Block whole = bin;
-  whole.hit_something = bin.hit_something.without(pairs.to_lens).without(pairs.to_vertex);
+  // What may let a ray through is asked for its coverage, whatever the ray is.
+  if (!context_.config.features.coverage)
+    whole.hit_something = bin.hit_something.without(pairs.to_lens).without(pairs.to_vertex);
   load_surfaces(context_, step, block, whole, {to.hit, to.surface, to.look_ups});
+  if (context_.config.features.coverage) return;
   constexpr int kFace = int{offsetof(SurfaceRecord, face)};
   context_.loads.copy_m2p(step, block,
                           {to.surface.span().offset_bytes + kFace, int{sizeof(SurfaceRecord)} - kFace},
@@ -163,8 +167,11 @@ void VertexStage::reach(std::uint64_t step, int block) {
   arguments.environment = context_.layout.environment;
   arguments.image = context_.layout.environment_image;
   arguments.sun_count = context_.layout.sun_count;
-  if (arguments.sun_count > 0)
-    arguments.suns = context_.machine.read_mono(context_.layout.suns, std::size_t(arguments.sun_count));
+  if (arguments.sun_count > 0) {
+    const auto count = std::size_t(arguments.sun_count);
+    arguments.suns = context_.machine.read_mono(context_.layout.suns, count);
+    arguments.sun_pdfs = context_.machine.read_mono(context_.layout.sun_pdfs, count);
+  }
   arguments.lobe_use = &lobe_use;
   arguments.world = pairs_.world;
   arguments.pair_sizes = pairs_.sizes;
@@ -194,6 +201,9 @@ void VertexStage::see(std::uint64_t step, int block) {
   arguments.features = context_.config.features;
   arguments.sizes = context_.layout.sizes;
   arguments.is_in_layers = context_.layout.layers.any;
+  arguments.sampler = context_.config.sampler;
+  arguments.seed = context_.config.seed;
+  arguments.pair_sizes = pairs_.sizes;
   arguments.pair = to.pair;
   arguments.result = to.result;
   arguments.is_result = &reached_lens_;
@@ -204,6 +214,7 @@ void VertexStage::decide(std::uint64_t step, int block) {
   const Saves to = saves(step);
   ended_ = LaneMask{};
   DecideArguments arguments;
+  arguments.pair_sizes = pairs_.sizes;
   arguments.pair = to.pair;
   arguments.light_vertices = pairs_.world.light_vertices;
   arguments.result = to.result;
@@ -272,6 +283,8 @@ void VertexStage::locate_far(std::uint64_t step, int block) {
   LaneMask segments;
   pairs.starts = LaneMask{};
   LocateFarArguments arguments;
+  arguments.pair_sizes = pairs_.sizes;
+  arguments.has_silent_lights = pairs_.world.has_silent_lights;
   arguments.pair = saves(step).pair;
   if (pairs_.world.has_lights) arguments.light_table = read_light_table(context_.machine, context_.layout);
   arguments.lights = context_.layout.lights.address;
@@ -334,7 +347,7 @@ void VertexStage::save(std::uint64_t step, int block) {
                             with_tail(from.pair, bytes), lanes);
   };
   save_pairs(pairs_.sizes.pair, reached_);
-  save_pairs(kPairBytesOfConnections, pairs.occupied.without(reached_));
+  save_pairs(pairs_.sizes.pair_of_connection, pairs.occupied.without(reached_));
 }
 
 }  // namespace path_tracer

@@ -163,6 +163,8 @@ Layout make_layout(const SceneCounts& scene, int num_pes, const ProgramConfig& c
         memory.take<EnvironmentTexel>("environment", scene.environment_texels).address;
   layout.sun_count = scene.suns;
   if (scene.suns > 0) layout.suns = memory.take<SunRecord>("suns", std::uint64_t(scene.suns));
+  if (scene.suns > 0 && config.is_bidirectional())
+    layout.sun_pdfs = memory.take<double>("densities of suns", std::uint64_t(scene.suns));
   layout.scene_bytes = memory.used_bytes();
   if (!config.keeps_paths_in_sram()) take_bins(layout, memory, scene, num_pes, config);
   const std::uint64_t results = config.keeps_paths_in_sram()

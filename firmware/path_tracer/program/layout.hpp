@@ -53,6 +53,8 @@ struct Layout {
   Layers layers;
   // Of bidirectional paths: what lights emit, and a sphere around the scene.
   cn::MonoPointer<LightEmissionRecord> light_emission;
+  cn::MonoPointer<double> sun_pdfs;  ///< by which connections find the suns' disks
+  bool has_silent_lights = false;    ///< lights from which no light path begins
   vec3<double> centre{};
   double radius = 0;
 

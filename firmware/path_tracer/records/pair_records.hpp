@@ -101,7 +101,16 @@ struct LightHeadRecord {
   std::int32_t unused = 0;
 };
 
-/// Bytes of a PairRecord that every ray needs.
+/// Behind a PairRecord and its window, in scenes with coverage: a ray that a surface has let through.
+struct PassingRecord {
+  vec3<double> origin{};        ///< of what is left of a connection
+  vec3<double> direction{};     ///< likewise, up to its end if that is near
+  double distance = 0;          ///< that a segment has behind it
+  std::int32_t face = kNoFace;  ///< that the ray goes through
+  std::int32_t passes = 0;      ///< 1: the ray goes on, and its slot does nothing else
+};
+
+/// Bytes of a PairRecord that every ray needs in scenes without coverage.
 inline constexpr int kPairBytesOfConnections = int{offsetof(PairRecord, position)};
 
 /// What a light emits: radiance of a light with triangles, which LightRecord does not have.
@@ -112,15 +121,22 @@ struct LightEmissionRecord {
 /// Sizes of the records above in a scene, and the places of their parts.
 struct PairSizes {
   int pair = sizeof(PairRecord);
+  int pair_of_connection = kPairBytesOfConnections;  ///< as much of `pair` as the ray of a connection needs
   int vertex = sizeof(PathVertexRecord);
   int heads = 0;  ///< of a slot
   int window = sizeof(PairRecord);
   int normal = 0;    ///< 0: the scene has none of it
   int material = 0;  ///< likewise
+  int passing = 0;   ///< likewise; in a PairRecord
 
   PairSizes(const Features& features, int light_vertices)
       : pair(int{sizeof(PairRecord)} + light_vertices * int{sizeof(double)}),
         heads(light_vertices * int{sizeof(LightHeadRecord)}) {
+    if (features.coverage) {
+      passing = pair;
+      pair += int{sizeof(PassingRecord)};
+      pair_of_connection = pair;
+    }
     if (features.shading_normals()) {
       normal = vertex;
       vertex += int{sizeof(VertexNormalRecord)};

@@ -18,13 +18,17 @@ enum class Purpose : std::uint32_t {
   emission,     ///< the direction that the path begins with
   light_scatter,
   light_lobe,
+  light_coverage,         ///< of a light path's segments
+  lens_coverage,          ///< of connections: of the light path's vertices to the lens
+  light_sample_coverage,  ///< of the eye path's to points of lights
+  light_vertex_coverage,  ///< and to vertices of the light path
 };
 
 /// A purpose for each of many things: the counter's word for it. @param number from 0, below 2^28
-inline cn::poly<std::uint32_t> purpose_for_each(Purpose purpose, const cn::poly<std::int32_t>& number) {
+inline cn::poly<std::uint32_t> purpose_for_each(const cn::poly<std::uint32_t>& purpose,
+                                                const cn::poly<std::int32_t>& number) {
   constexpr int kPurposeBits = 4;
-  return (cn::reinterpret_word<std::uint32_t>(number) << kPurposeBits) |
-         cn::poly<std::uint32_t>(static_cast<std::uint32_t>(purpose));
+  return (cn::reinterpret_word<std::uint32_t>(number) << kPurposeBits) | purpose;
 }
 
 /// Four uniform numbers in (0, 1).

@@ -60,8 +60,9 @@ inline cn::poly<double> coverage_number(Sampler sampler, std::uint64_t seed,
                                         const cn::poly<std::int32_t>& pixel,
                                         const cn::poly<std::int32_t>& sample,
                                         const cn::poly<std::int32_t>& depth,
-                                        const cn::poly<std::int32_t>& face) {
-  const cn::poly<std::uint32_t> purpose = purpose_for_each(Purpose::coverage, face);
+                                        const cn::poly<std::int32_t>& face,
+                                        const cn::poly<std::uint32_t>& of = word_of(Purpose::coverage)) {
+  const cn::poly<std::uint32_t> purpose = purpose_for_each(of, face);
   if (sampler == Sampler::sobol) return sobol_single(sobol_point(seed, pixel, sample, depth, purpose));
   return uniform4(seed, pixel, sample, depth, purpose).value[0];
 }

@@ -13,6 +13,7 @@
 #include "testbench/film/image_agreement.hpp"
 #include "testbench/run/render.hpp"
 #include "testbench/run/traversal_choice.hpp"
+#include "testbench/sampling/sample_counts.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/native_paths.hpp"
@@ -157,6 +158,35 @@ TEST(Bidirectional, AgreesUnderADiskBesideGlass) {
   scene.materials.back().ior = 1.5;
   scene.materials.back().specular = 1;
   expect_agreement(scene, 256);
+}
+
+/// Light paths end in any pixel, so their share of a pixel does not depend on how many paths it has of its
+/// own.
+TEST(Bidirectional, AgreesWithUnevenNumbersOfPaths) {
+  const Scene scene = without_lamps(shipped("cornell_box", {16, 16}));
+  RenderOptions even = options_of(Paths::bidirectional, 512);
+  RenderOptions uneven = options_of(Paths::bidirectional, 1);
+  uneven.program.seed = 3;
+  testbench::SampleCounts counts;
+  for (int pixel = 0; pixel < 16 * 16; ++pixel) counts.push_back(pixel * 7 % 16 * 128);
+  uneven.camera_samples =
+      testbench::list_samples(testbench::SampleCounts(counts.size(), 0), counts, uneven.program.pixel_stride);
+  const Film of_uneven = render_natively(scene, uneven).film;
+  const Film of_even = render_natively(scene, even).film;
+  double chi_square = 0;
+  int pixels = 0;
+  for (int pixel = 0; pixel < of_even.pixel_count(); ++pixel) {
+    if (counts[std::size_t(pixel)] == 0) {
+      EXPECT_EQ(of_uneven.mean(pixel), glm::dvec3(0.0)) << "a pixel without paths is black";
+      continue;
+    }
+    const double difference = of_uneven.mean(pixel).x - of_even.mean(pixel).x;
+    chi_square +=
+        difference * difference / (of_uneven.variance_of_mean(pixel).x + of_even.variance_of_mean(pixel).x);
+    ++pixels;
+  }
+  ASSERT_EQ(pixels, 240);
+  EXPECT_LT(std::abs(chi_square - pixels), 5 * std::sqrt(2.0 * pixels)) << "of " << pixels << " pixels";
 }
 
 double mean_of(const Film& film, double& error) {

@@ -104,7 +104,7 @@ struct ProgramConfig {
   Program program = Program::full;
   Execution execution = Execution::mtap;
   Paths paths = Paths::unidirectional;
-  int light_vertices = 4;  ///< of a light path that a slot keeps, at most; of bidirectional paths
+  int light_vertices = 2;  ///< of a light path that a slot keeps, at most; of bidirectional paths
   int n = 1;               ///< blocks loaded ahead and saved behind, 0 to kMaxBuffers
   bool buffer_loads = true;
   bool buffer_saves = true;

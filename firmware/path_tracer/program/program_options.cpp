@@ -189,7 +189,7 @@ Options sampling() {
           "paths", Paths::unidirectional, kPathsNames,
           "paths from the lens alone, or from the lens and from a light, whose vertices are joined"),
       integer<&ProgramConfig::light_vertices>(
-          "light_vertices", "vertices", 4, {1, kMaxLightVertices},
+          "light_vertices", "vertices", 2, {1, kMaxLightVertices},
           "vertices of a light path that a slot of bidirectional paths keeps; it ends there"),
       choice<&ProgramConfig::sampler>(
           "sampler", Sampler::sobol, kSamplerNames,

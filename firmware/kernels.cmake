@@ -25,8 +25,9 @@ function(csx600_add_level_object name level)
   set(native_bits ${CSX600_NATIVE_BITS_${level}})
   add_library(${name}_objects OBJECT ${of_SOURCES})
   target_compile_options(${name}_objects PRIVATE
-    -march=x86-64-${level} -mmove-max=${native_bits} -mstore-max=${native_bits} -mmemset-strategy=vector_loop:-1:noalign
-    -Wno-psabi -fno-gnu-unique)
+    -march=x86-64-${level} -Wno-psabi
+    "$<$<CXX_COMPILER_ID:GNU>:-mmove-max=${native_bits};-mstore-max=${native_bits}>"
+    "$<$<CXX_COMPILER_ID:GNU>:-mmemset-strategy=vector_loop:-1:noalign;-fno-gnu-unique>")
   if(of_OBSERVED)
     target_compile_definitions(${name}_objects PRIVATE CN_OBSERVED_SRAM)
     target_compile_options(${name}_objects PRIVATE -O1)

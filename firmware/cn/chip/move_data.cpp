@@ -84,34 +84,33 @@ struct StripTransfer {
 #if defined(__AVX512F__)
 
 constexpr int kBlockWords = 8;
-// GCC's own shuffles, because the headers' intrinsics of AVX-512 trip its warning of uninitialised values.
+// The compilers' own shuffles, because the headers' intrinsics of AVX-512 trip GCC's warning of uninitialised
+// values.
 using Words __attribute__((vector_size(64))) = long long;
 using Block = Words[8];
 
 [[gnu::always_inline]] inline void transpose(Block& block) {
-  constexpr Words kLowOfPairs{0, 8, 2, 10, 4, 12, 6, 14};
-  constexpr Words kHighOfPairs{1, 9, 3, 11, 5, 13, 7, 15};
-  constexpr Words kEvenPairs{0, 1, 4, 5, 8, 9, 12, 13};
-  constexpr Words kOddPairs{2, 3, 6, 7, 10, 11, 14, 15};
   Block pairs;
 #pragma GCC unroll 8
   for (int i = 0; i < 8; i += 2) {
-    pairs[i] = __builtin_shuffle(block[i], block[i + 1], kLowOfPairs);
-    pairs[i + 1] = __builtin_shuffle(block[i], block[i + 1], kHighOfPairs);
+    pairs[i] = __builtin_shufflevector(block[i], block[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    pairs[i + 1] = __builtin_shufflevector(block[i], block[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
   }
   Block fours;
 #pragma GCC unroll 8
   for (int i = 0; i < 2; ++i) {
 #pragma GCC unroll 8
     for (int half = 0; half < 8; half += 4) {
-      fours[half + i] = __builtin_shuffle(pairs[half + i], pairs[half + i + 2], kEvenPairs);
-      fours[half + i + 2] = __builtin_shuffle(pairs[half + i], pairs[half + i + 2], kOddPairs);
+      fours[half + i] =
+          __builtin_shufflevector(pairs[half + i], pairs[half + i + 2], 0, 1, 4, 5, 8, 9, 12, 13);
+      fours[half + i + 2] =
+          __builtin_shufflevector(pairs[half + i], pairs[half + i + 2], 2, 3, 6, 7, 10, 11, 14, 15);
     }
   }
 #pragma GCC unroll 8
   for (int i = 0; i < 4; ++i) {
-    block[i] = __builtin_shuffle(fours[i], fours[i + 4], kEvenPairs);
-    block[i + 4] = __builtin_shuffle(fours[i], fours[i + 4], kOddPairs);
+    block[i] = __builtin_shufflevector(fours[i], fours[i + 4], 0, 1, 4, 5, 8, 9, 12, 13);
+    block[i + 4] = __builtin_shufflevector(fours[i], fours[i + 4], 2, 3, 6, 7, 10, 11, 14, 15);
   }
 }
 

@@ -12,9 +12,21 @@ std::string names_of(const std::vector<Level>& levels) {
 }  // namespace
 
 bool processor_executes(Level level) {
+#if defined(__clang__)
+  // Clang 14 knows features only: those of a level (System V ABI of AMD64, section 3.1.1) that it has names
+  // for.
+  const bool v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
+  const bool v3 = v2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                  __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                  __builtin_cpu_supports("avx512vl");
+  return level == Level::x86_64_v4 ? v4 : level == Level::x86_64_v3 ? v3 : v2;
+#else
   if (level == Level::x86_64_v4) return __builtin_cpu_supports("x86-64-v4") != 0;
   if (level == Level::x86_64_v3) return __builtin_cpu_supports("x86-64-v3") != 0;
   return __builtin_cpu_supports("x86-64-v2") != 0;
+#endif
 }
 
 std::string name_of(Level level) {

@@ -11,14 +11,14 @@ constexpr int kSimulatorPes = 384;
 constexpr int kBinBlocks = 4;
 
 /// Whether hits are shaded faster in bins of their kind than where their slots are. A bin costs about 6 % of
-/// a diffuse scene's time. It pays where vertices cost much, by rough facets, refraction, textures or
-/// candidates of lights; but not where paths leave early for the sky, because blocks of camera rays are of a
-/// kind anyway.
+/// a diffuse scene's time. It pays where vertices cost much: by textures, rough facets, refraction or
+/// candidates of lights. Without textures it does not where paths leave early for the sky: blocks of camera
+/// rays are of a kind anyway.
 bool bins_of_hits_pay(const ProgramConfig& program) {
   const path_tracer::Features& features = program.features;
+  if (features.textures.any()) return true;
   if (features.environment || features.lights.environment) return false;
-  return features.lobes.rough_specular() || features.lobes.transmissive() || features.textures.any() ||
-         program.light_candidates > 1;
+  return features.lobes.rough_specular() || features.lobes.transmissive() || program.light_candidates > 1;
 }
 
 bool allows_bins_of_hits(const ProgramConfig& program) {

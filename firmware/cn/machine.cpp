@@ -26,7 +26,7 @@ void check_alignment(const Transfer& transfer, int num_pes) {
     if (transfer.mono.stride_bytes % 8 != 0) fault("stride", transfer.mono.stride_bytes);
     return;
   }
-  if ((transfer.mono.first | offset_bits(transfer.mono, num_pes)) % 8 == 0) return;
+  if ((transfer.mono.first | offset_bits(transfer, num_pes)) % 8 == 0) return;
   const int pe = first_pe_not(transfer, num_pes, [](MonoAddress place) { return place % 8 == 0; });
   if (pe >= 0) fault("mono address of PE " + std::to_string(pe), transfer.mono[pe]);
 }

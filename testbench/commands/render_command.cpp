@@ -15,6 +15,7 @@
 #include "testbench/film/image_file.hpp"
 #include "testbench/observe/observation.hpp"
 #include "testbench/run/program_choice.hpp"
+#include "testbench/run/simulator_choice.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/rank_render.hpp"
 #include "testbench/statistics/render_report.hpp"
@@ -97,8 +98,7 @@ std::string RenderCommand::choose_tree_for(const Scene& loaded, RenderOptions& o
     of_chip.traversal = of.program.traversal;
     of_chip.tree = of.program.tree;
     of.program = of_chip;
-    search_natively(of);
-    return "native: through the simulator's own tree";
+    return suit_to_simulator(firmware.given(), of);
   }
   of.program = of_chip;
   return reason;
@@ -308,8 +308,9 @@ void add_render_command(CLI::App& app) {
   state->timing.add_to(command);
   state->level.add_to(command);
   command.add_flag("--native", state->native, "Run the firmware without SystemC: same image, no time");
-  command.add_flag("--firmware-search", state->firmware_search,
-                   "With --native, find hits as the firmware does, not through the simulator's own tree");
+  command.add_flag(
+      "--firmware-search", state->firmware_search,
+      "With --native, find hits and fill blocks as the chip does, not as the simulator is fastest");
   add_check_hazards_flag(command, state->options.check_hazards);
   state->outputs.add_to(command, "--exr", "Write the image as OpenEXR");
   state->outputs.add_to(command, "--png", "Write the image as PNG");

@@ -67,6 +67,7 @@ struct CosineBase {
   Rgb multiple;               ///< of the light that metal and frosted sheets scatter several times
   Rgb behind;                 ///< the same of what frosted sheets transmit
   poly<double> share_behind;  ///< of the samples
+  poly<double> albedo;        ///< strongest channel of all of them; where light is scattered several times
 };
 
 /// Share of light that coat and sheen let through in one direction.
@@ -115,6 +116,11 @@ inline constexpr double kCoatF0 = 0.04;
 
 /// Coats are rough or smooth.
 inline constexpr AlbedoNeeds kCoatAlbedo{true, true, true};
+
+/// Whether light that facets scatter several times is a part of the cosine's lobe.
+constexpr bool scatters_often(const Lobes& lobes) {
+  return lobes.glossy || lobes.frosted_sheets();
+}
 
 constexpr AlbedoNeeds base_albedo_needs(const Lobes& lobes) {
   return {lobes.rough_specular(), lobes.smooth_specular(), lobes.diffuse};

@@ -184,8 +184,7 @@ inline LobeValue evaluate_cosine_base(const Bsdf& bsdf, const LightSide& light) 
   if (lobes.diffuse)
     reflectance.add(base.diffuse *
                     cn::max(1.0 - schlick_albedo(albedo, material.f0, material.f90), poly<double>(0.0)));
-  const bool scatters = lobes.glossy || lobes.frosted_sheets();
-  if (scatters) reflectance.add(base.multiple * albedo.loss);
+  if (scatters_often(lobes)) reflectance.add(base.multiple * albedo.loss);
   if (!lobes.frosted_sheets()) return {reflectance.total() * pdf, pdf};
   const Rgb value = cn::select(light.transmits, base.behind * albedo.loss, reflectance.total());
   return {value * pdf, pdf * cn::select(light.transmits, base.share_behind, 1.0 - base.share_behind)};

@@ -31,9 +31,21 @@ inline void add_frosted(const Lobes& lobes, const Material& material, const poly
                         CosineBase& base) {
   assign(base.multiple, lobes.glossy ? plus(base.multiple, frosted) : Rgb{frosted, frosted, frosted});
   assign(base.behind, transmission_color(lobes, material) * frosted);
-  const poly<double> behind = largest_channel(base.behind);
-  const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
-  base.share_behind.assign_all_lanes(behind / keep_positive(front + behind));
+}
+
+/// Estimates the albedo of the cosine's lobe, and how its samples are shared among the two sides. The light's
+/// own loss is a factor of `multiple` and `behind` still; its average makes them albedos.
+inline void estimate_albedo(const Lobes& lobes, const DirectionalAlbedo& average, CosineBase& base) {
+  const poly<double> loss = cn::max(average.loss, poly<double>(kLeastAverageLoss));
+  const Rgb multiple = base.multiple * loss;
+  const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + multiple : multiple);
+  if (!lobes.frosted_sheets()) {
+    base.albedo.assign_all_lanes(front);
+    return;
+  }
+  const poly<double> behind = largest_channel(base.behind) * loss;
+  base.albedo.assign_all_lanes(front + behind);
+  base.share_behind.assign_all_lanes(behind / keep_positive(base.albedo));
 }
 
 inline CosinePart cosine_part_under_specular(const Lobes& lobes, const Material& material,
@@ -49,6 +61,7 @@ inline CosinePart cosine_part_under_specular(const Lobes& lobes, const Material&
   if (lobes.glossy) assign(base.multiple, multiple_scattering(material, average, viewer));
   if (lobes.frosted_sheets())
     add_frosted(lobes, material, frosted_scattering(material, shares.transmissive, average, viewer), base);
+  if (scatters_often(lobes)) estimate_albedo(lobes, average, base);
   return {base, albedo};
 }
 
@@ -59,6 +72,9 @@ inline CosinePart cosine_part(const BsdfConfig& config, const Material& material
   CosinePart alone{};
   if (lobes.diffuse) assign(alone.base.diffuse, material.base_color);
   if (!lobes.specular()) return alone;
+  if (scatters_often(lobes))
+    alone.base.albedo.assign_all_lanes(lobes.diffuse ? largest_channel(alone.base.diffuse)
+                                                     : poly<double>(0.0));
   return unless_absent(
       config, [&] { return specular.is_present(lobes); }, alone,
       [&] { return cosine_part_under_specular(lobes, material, shares, specular.alpha, cos_viewer); });
@@ -74,10 +90,7 @@ inline poly<double> specular_estimate(const Lobes& lobes, const SpecularBase& ba
 }
 
 inline poly<double> cosine_estimate(const Lobes& lobes, const CosineBase& base) {
-  if (!lobes.specular()) return largest_channel(base.diffuse);
-  if (!lobes.glossy && !lobes.frosted_sheets()) return largest_channel(base.diffuse);
-  const poly<double> front = largest_channel(lobes.diffuse ? base.diffuse + base.multiple : base.multiple);
-  return lobes.frosted_sheets() ? front + largest_channel(base.behind) : front;
+  return scatters_often(lobes) ? base.albedo : largest_channel(base.diffuse);
 }
 
 /// Samples in proportion to the lobes' albedos, so that no weight is much above the sum of the albedos.

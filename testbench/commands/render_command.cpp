@@ -81,12 +81,6 @@ RenderRequest RenderCommand::make_request() const {
     throw InputError(
         "--waves, --transactions, --timeline: a native run has no clock and records no waves; leave out "
         "--native");
-  if (options.program.is_bidirectional() &&
-      (importance.is_given() || passes.has_target() || passes.budget(native).has_value()))
-    throw InputError(
-        "--importance, --target-error, --time-budget: found with --paths bidirectional, whose light paths "
-        "may "
-        "end in any pixel; allowed is the same number of paths in each pixel");
   request.options.observation = observation.options(request.options.chip);
   return request;
 }

@@ -114,6 +114,7 @@ bool Film::add(int pixel_index, const glm::dvec3& radiance) {
   for (int channel = 0; channel < 3; ++channel)
     pixel.sum[channel] += to_fixed_point(radiance[channel], sum_units_);
   ++pixel.samples;
+  ++all_samples_;
   if (!keeps_variances()) return true;
   add_to(squares_[static_cast<std::size_t>(pixel_index)], radiance);
   return true;
@@ -169,6 +170,7 @@ void Film::merge(const Film& other) {
     for (int channel = 0; channel < 3; ++channel) sums_[i].sum[channel] += other.sums_[i].sum[channel];
     sums_[i].samples += other.sums_[i].samples;
   }
+  all_samples_ += other.all_samples_;
   if (other.has_splats()) take_splats();
   const auto add_all = [](std::vector<Squares>& to, const std::vector<Squares>& from) {
     for (std::size_t i = 0; i < from.size(); ++i)
@@ -199,6 +201,7 @@ Film Film::from_bytes(FilmSize size, double scale, FilmSums sums, const std::str
   const char* const behind_samples = get_bytes(film.squares_, get_bytes(film.sums_, bytes.data()));
   const char* const behind_pixels = get_bytes(film.splat_squares_, get_bytes(film.splats_, behind_samples));
   std::memcpy(&film.rejected_, behind_pixels, sizeof(film.rejected_));
+  for (const Sums& pixel : film.sums_) film.all_samples_ += pixel.samples;
   return film;
 }
 
@@ -213,8 +216,12 @@ glm::dvec3 Film::mean(int pixel_index) const {
   glm::dvec3 result;
   for (int channel = 0; channel < 3; ++channel) {
     auto sum = static_cast<Float128>(pixel.sum[channel]);
+    // What the splats would be of as many light paths as the pixel has samples: exact where all pixels have
+    // as many.
     if (has_splats())
-      sum += static_cast<Float128>(splats_[static_cast<std::size_t>(pixel_index)].sum[channel]);
+      sum += static_cast<Float128>(splats_[static_cast<std::size_t>(pixel_index)].sum[channel]) *
+             (static_cast<Float128>(pixel.samples) * static_cast<Float128>(sums_.size()) /
+              static_cast<Float128>(all_samples_));
     const Float128 quotient = sum / static_cast<Float128>(pixel.samples);
     result[channel] = from_float128(quotient, sum_quantum_exponent_);
   }
@@ -238,11 +245,18 @@ glm::dvec3 Film::variance_of_mean(int pixel_index) const {
     const Float128 variance = deviation / (samples - 1) / samples;
     result[channel] = std::max(
         0.0, from_float128(variance, square_quantum_exponent_));  // truncated bits may make it negative
-    if (splat_squares_.empty()) continue;
-    const auto of_splats =
-        static_cast<Float128>(splat_squares_[static_cast<std::size_t>(pixel_index)].sum[channel]);
-    result[channel] += from_float128(of_splats / samples / samples, square_quantum_exponent_);
   }
+  return result + variance_of_splats(pixel_index);
+}
+
+glm::dvec3 Film::variance_of_splats(int pixel_index) const {
+  glm::dvec3 result(0.0);
+  if (splat_squares_.empty() || all_samples_ == 0) return result;
+  const Squares& squares = splat_squares_.at(static_cast<std::size_t>(pixel_index));
+  const Float128 samples = static_cast<Float128>(all_samples_) / static_cast<Float128>(sums_.size());
+  for (int channel = 0; channel < 3; ++channel)
+    result[channel] = from_float128(static_cast<Float128>(squares.sum[channel]) / samples / samples,
+                                    square_quantum_exponent_);
   return result;
 }
 

@@ -52,7 +52,8 @@ class Film {
   bool add(int pixel, const glm::dvec3& radiance);
 
   /// Adds light that is no sample of the pixel's own: what a light path brings to it, over the number of
-  /// light paths for each sample of a pixel. It counts as if every sample of the pixel had brought its share.
+  /// pixels. Each sample of any pixel has a light path, and any of them may bring light here: so splats are
+  /// divided by samples_for_each_pixel(), and a pixel's mean is that of its samples plus that of its splats.
   /// Else as add().
   bool add_splat(int pixel, const glm::dvec3& radiance);
 
@@ -80,13 +81,17 @@ class Film {
 
   std::uint64_t sample_count(int pixel) const { return at(pixel).samples; }
   PixelSamples samples() const;
+  /// Samples of all pixels over the number of pixels.
+  double samples_for_each_pixel() const { return double(all_samples_) / double(pixel_count()); }
   /// Mean radiance; 0 for a pixel without samples.
   glm::dvec3 mean(int pixel) const;
   bool keeps_variances() const { return !squares_.empty(); }
-  /// Unbiased estimate of the variance of mean(): sample variance / samples, and that of splats, of which
-  /// each is one of many rare events: the sum of their squares / samples^2. 0 with fewer than two samples.
-  /// Throws std::logic_error if there are more and the film keeps no variances.
+  /// Unbiased estimate of the variance of mean(): sample variance / samples, and that of splats. 0 with fewer
+  /// than two samples. Throws std::logic_error if there are more and the film keeps no variances.
   glm::dvec3 variance_of_mean(int pixel) const;
+  /// The part of variance_of_mean() that is of splats. Each is one of many rare events, so it is the sum of
+  /// their squares / samples_for_each_pixel()^2.
+  glm::dvec3 variance_of_splats(int pixel) const;
 
   const RejectedSamples& rejected() const { return rejected_; }
   std::uint64_t rejected_samples() const;
@@ -133,7 +138,8 @@ class Film {
   double sum_units_;             ///< 2^-63 / (unit of Sums::sum)
   double square_units_;          ///< 2^-63 / (unit of Squares::sum)
   std::vector<Sums> sums_;
-  std::vector<Squares> squares_;  ///< empty if no variances are kept
+  std::uint64_t all_samples_ = 0;  ///< of all pixels
+  std::vector<Squares> squares_;   ///< empty if no variances are kept
   // Of splats; empty until there is one.
   std::vector<Squares> splats_;         ///< sums in the unit of Sums::sum
   std::vector<Squares> splat_squares_;  ///< empty if no variances are kept

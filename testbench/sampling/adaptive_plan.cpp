@@ -14,7 +14,7 @@ constexpr double kLeastGrowth = 1.05;  ///< so that the last passes are not many
 /// Samples in proportion to the deviations, within what is done and what is allowed.
 class Allocation {
  public:
-  Allocation(const std::vector<double>& deviations, const std::vector<double>& importance, int samples,
+  Allocation(const SampleDeviations& deviations, const std::vector<double>& importance, int samples,
              const MeanSamples& done)
       : deviations_(deviations), importance_(importance), samples_(samples), done_(done) {}
 
@@ -22,7 +22,7 @@ class Allocation {
   MeanSamples at(double scale) const {
     MeanSamples means(done_.size());
     for (std::size_t pixel = 0; pixel < means.size(); ++pixel) {
-      const double wanted = scale * deviations_[pixel] * std::sqrt(importance_[pixel]);
+      const double wanted = scale * deviations_.of_sample[pixel] * std::sqrt(importance_[pixel]);
       means[pixel] = std::max(done_[pixel], std::min(wanted, importance_[pixel] * samples_));
     }
     return means;
@@ -30,12 +30,12 @@ class Allocation {
   double error(const MeanSamples& means) const { return picture_error(deviations_, importance_, means); }
   double least_scale() const { return 1e-9 * samples_; }
   double most_scale() const {
-    const double largest = *std::max_element(deviations_.begin(), deviations_.end());
+    const double largest = *std::max_element(deviations_.of_sample.begin(), deviations_.of_sample.end());
     return largest > 0 ? 1e9 * samples_ / largest : 1;
   }
 
  private:
-  const std::vector<double>& deviations_;
+  const SampleDeviations& deviations_;
   const std::vector<double>& importance_;
   int samples_;
   const MeanSamples& done_;
@@ -64,7 +64,7 @@ AdaptivePlan::AdaptivePlan(std::vector<double> importance, int samples, double t
 
 std::optional<MeanSamples> AdaptivePlan::next(const MeanSamples& done, const Film& film) {
   if (std::optional<MeanSamples> first = first_passes_.next(done)) return first;
-  const std::vector<double> deviations = sample_deviations(film);
+  const SampleDeviations deviations = sample_deviations(film);
   error_ = picture_error(deviations, importance_, done);
   if (*error_ <= target_) return std::nullopt;
   const Allocation allocation(deviations, importance_, samples_, done);

@@ -8,8 +8,9 @@ namespace testbench {
 /// where they lower the picture's relative RMSE (error_estimate.hpp) most, until it is at most `target`.
 ///
 /// The error of n samples is smallest, of all distributions of as many paths, where n is proportional to the
-/// deviation of a sample (Neyman, J. R. Stat. Soc. 97, 1934). A pass at most doubles the number of paths, as
-/// the deviations are estimates that get better.
+/// deviation of a sample (Neyman, J. R. Stat. Soc. 97, 1934). What splats add to the error depends on the
+/// number of all paths only, so that does not change with them. A pass at most doubles the number of paths,
+/// as the deviations are estimates that get better.
 class AdaptivePlan : public SamplePlan {
  public:
   /// @param samples times a pixel's importance are the most that it gets

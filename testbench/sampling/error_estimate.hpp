@@ -7,6 +7,14 @@
 
 namespace testbench {
 
+/// What is known of a picture's noise, of each pixel.
+struct SampleDeviations {
+  std::vector<double> of_sample;  ///< of the pixel's own
+  /// Of what the light path of a sample of each pixel brings to this one (Film::add_splat): all samples lower
+  /// it alike, wherever they are.
+  std::vector<double> of_splats;
+};
+
 /// The relative deviation of one sample of each pixel: the root of the mean over R, G and B of
 ///
 ///     variance of a sample / (mean^2 + (kDarkShare * the picture's mean luminance)^2)
@@ -18,15 +26,16 @@ namespace testbench {
 /// have missed the light is given up.
 ///
 /// @param film with variances
-std::vector<double> sample_deviations(const Film& film);
+SampleDeviations sample_deviations(const Film& film);
 
 inline constexpr double kDarkShare = 0.1;
 inline constexpr int kDeviationRadius = 2;
 inline constexpr double kLeastDeviation = 0.25;
 
 /// The relative RMSE of a picture whose pixels have so many samples: the root of the mean over the pixels,
-/// weighted by their importance, of deviation^2 / samples. Pixels without samples do not count.
-double picture_error(const std::vector<double>& deviations, const std::vector<double>& importance,
+/// weighted by their importance, of of_sample^2 / samples + of_splats^2 / the mean of samples. Pixels without
+/// samples do not count.
+double picture_error(const SampleDeviations& deviations, const std::vector<double>& importance,
                      const MeanSamples& samples);
 
 }  // namespace testbench

@@ -280,8 +280,9 @@ TEST(Bidirectional, GivesTheSameBitsByEveryTraversal) {
   for (const path_tracer::Traversal traversal :
        {path_tracer::Traversal::temporary_bin, path_tracer::Traversal::refill,
         path_tracer::Traversal::lock_step, path_tracer::Traversal::packets,
-        path_tracer::Traversal::shared_treelets}) {
+        path_tracer::Traversal::shared_treelets, path_tracer::Traversal::ray_unit}) {
     RenderOptions changed = options;
+    changed.chip.search_unit.units = 1;
     changed.program.traversal = traversal;
     changed.program.bin_blocks = 4;
     testbench::choose_tree(testbench::TriangleCount(scene), changed.chip, {"traversal"}, changed.program);
@@ -302,6 +303,50 @@ TEST(Bidirectional, AddsUpFromPartsOfTheWork) {
       Film::from_bytes(whole.size(), whole.scale(), testbench::FilmSums::means_and_variances, whole.bytes());
   EXPECT_EQ(sent.sha256(), whole.sha256());
   EXPECT_EQ(sent.variance_of_mean(20), whole.variance_of_mean(20));
+}
+
+/// From 16 to 256 samples a pixel, most of them at the right: light paths begin where no one looks at what
+/// they bring.
+testbench::SampleCounts uneven_counts(FilmSize film) {
+  testbench::SampleCounts counts;
+  for (int row = 0; row < film.height; ++row)
+    for (int column = 0; column < film.width; ++column)
+      counts.push_back(16 + 240 * std::int32_t(column * column) / std::int32_t(film.width * film.width));
+  return counts;
+}
+
+Film listed(const Scene& scene, const testbench::SampleCounts& first, const testbench::SampleCounts& last) {
+  RenderOptions options = options_of(Paths::bidirectional, 256);
+  options.camera_samples = testbench::list_samples(first, last, options.program.pixel_stride);
+  testbench::search_natively(options);
+  return render_natively(scene, options).film;
+}
+
+TEST(Bidirectional, HasTheSameMeanWithUnevenNumbersOfSamples) {
+  for (const char* const name : {"uplight", "cornell_box"}) {
+    const Scene scene = without_lamps(shipped(name, {24, 24}));
+    const testbench::SampleCounts counts = uneven_counts(scene.film);
+    const testbench::SampleCounts none(counts.size(), 0);
+    const Film film = listed(scene, none, counts);
+    RenderOptions one = options_of(Paths::unidirectional, 1024);
+    testbench::search_natively(one);
+    const testbench::ImageAgreement agreement = agreement_of(render_natively(scene, one).film, film);
+    EXPECT_TRUE(agreement.holds()) << name << "\n" << agreement.text();
+    const testbench::SampleCounts first(counts.size(), 16);
+    Film passes = listed(scene, none, first);
+    passes.merge(listed(scene, first, counts));
+    EXPECT_EQ(passes.sha256(), film.sha256()) << name << ": two passes are one";
+  }
+}
+
+/// Splats divided by the pixel's own number of samples would be bright where it is small.
+TEST(Bidirectional, AFurnaceIsOneWithUnevenNumbersOfSamples) {
+  const Scene scene = test_support::closed_cube(0.8, 0.2, {16, 16});
+  const testbench::SampleCounts counts = uneven_counts(scene.film);
+  double error = 0;
+  const double mean = mean_of(listed(scene, testbench::SampleCounts(counts.size(), 0), counts), error);
+  EXPECT_LT(error, 4e-3) << "too few samples to tell";
+  EXPECT_LT(std::abs(mean - 1), 4 * error) << mean;
 }
 
 TEST(Bidirectional, CountsItsConnections) {

@@ -60,7 +60,7 @@ TEST(ShapedPlan, ComesBackToWholeSamplesAfterAPassCutShort) {
 
 TEST(ErrorEstimate, IsTheRelativeDeviationOfASample) {
   const int samples = 64;
-  const std::vector<double> deviations = testbench::sample_deviations(film_of(samples));
+  const std::vector<double> deviations = testbench::sample_deviations(film_of(samples)).of_sample;
   const double unbiased = double(samples) / (samples - 1);
   const double bound = 1 + testbench::kDarkShare * testbench::kDarkShare;
   EXPECT_NEAR(deviations[std::size_t(pixel_at(5, 8))], 0.8 * std::sqrt(unbiased / bound), 1e-12);
@@ -78,8 +78,8 @@ TEST(ErrorEstimate, OfAPixelDependsOnNoneOfItsOwnSamples) {
   }
   // The same mean, so that the picture's is the same too.
   for (int i = 0; i < 8; ++i) other.add(pixel, glm::dvec3(i == 0 ? 8.0 : 0.0));
-  const std::vector<double> before = testbench::sample_deviations(film);
-  const std::vector<double> after = testbench::sample_deviations(other);
+  const std::vector<double> before = testbench::sample_deviations(film).of_sample;
+  const std::vector<double> after = testbench::sample_deviations(other).of_sample;
   EXPECT_EQ(before[std::size_t(pixel)], after[std::size_t(pixel)]);
   EXPECT_LT(before[std::size_t(pixel + 1)], after[std::size_t(pixel + 1)]);
   EXPECT_EQ(before[std::size_t(pixel + 5)], after[std::size_t(pixel + 5)]);
@@ -91,8 +91,31 @@ TEST(ErrorEstimate, GivesUpNoPixelWhoseSamplesAreEqual) {
     const bool is_noisy = pixel % kSize.width < 4;
     for (int i = 0; i < 8; ++i) film.add(pixel, glm::dvec3(is_noisy && i == 0 ? 8 : 1));
   }
-  const std::vector<double> deviations = testbench::sample_deviations(film);
+  const std::vector<double> deviations = testbench::sample_deviations(film).of_sample;
   EXPECT_GT(deviations[std::size_t(pixel_at(25, 8))], 0);
+}
+
+/// What light paths bring to the right half is lowered by samples of any pixel: they are no reason to put
+/// samples there, but part of the error.
+TEST(ErrorEstimate, TellsSplatsFromThePixelsOwnSamples) {
+  Film film = film_of(8);
+  const testbench::SampleDeviations without = testbench::sample_deviations(film);
+  for (int pixel = 0; pixel < film.pixel_count(); ++pixel)
+    for (int i = 0; i < 8; ++i) film.add_splat(pixel, glm::dvec3(0.5));
+  const testbench::SampleDeviations with = testbench::sample_deviations(film);
+  const std::size_t pixel = std::size_t(pixel_at(5, 8));
+  EXPECT_EQ(without.of_splats[pixel], 0);
+  const double bound = 1 + testbench::kDarkShare * testbench::kDarkShare;
+  // The mean is 1.5 times as large, and a light path brings 0.5 with certainty: 0.25 / 1.5^2.
+  EXPECT_NEAR(with.of_sample[pixel], without.of_sample[pixel] / 1.5, 1e-12);
+  EXPECT_NEAR(with.of_splats[pixel], std::sqrt(0.25 / bound) / 1.5, 1e-12);
+
+  const std::vector<double> even(kPixels, 1.0);
+  const testbench::SampleDeviations both = {std::vector<double>(kPixels, 0.0),
+                                            std::vector<double>(kPixels, 0.5)};
+  MeanSamples uneven(kPixels, 1.0);
+  uneven[0] = 1.0 + 3.0 * double(kPixels);
+  EXPECT_NEAR(testbench::picture_error(both, even, uneven), 0.25, 1e-12) << "four paths for each pixel";
 }
 
 TEST(AdaptivePlan, PutsSamplesInProportionToTheDeviation) {

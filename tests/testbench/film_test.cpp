@@ -244,7 +244,10 @@ TEST(Film, splats_are_light_of_the_pixel_but_no_samples) {
   Film film({2, 1}, 1.0);
   ASSERT_TRUE(film.add_splat(0, {0.25, 0.5, 1.0}));  // before there is a sample
   EXPECT_EQ(film.mean(0), glm::dvec3(0.0));
-  for (const double value : {1.0, 2.0, 3.0, 2.0}) ASSERT_TRUE(film.add(0, glm::dvec3(value)));
+  for (const double value : {1.0, 2.0, 3.0, 2.0}) {
+    ASSERT_TRUE(film.add(0, glm::dvec3(value)));
+    ASSERT_TRUE(film.add(1, glm::dvec3(0.0)));
+  }
   const glm::dvec3 without = [] {
     Film samples({1, 1}, 1.0);
     for (const double value : {1.0, 2.0, 3.0, 2.0}) samples.add(0, glm::dvec3(value));
@@ -252,7 +255,7 @@ TEST(Film, splats_are_light_of_the_pixel_but_no_samples) {
   }();
   ASSERT_TRUE(film.add_splat(0, {0.75, 0.5, 1.0}));
   EXPECT_EQ(film.sample_count(0), 4u);
-  EXPECT_EQ(film.sample_count(1), 0u);
+  EXPECT_EQ(film.sample_count(1), 4u);
   EXPECT_EQ(film.mean(0), glm::dvec3(2.25, 2.25, 2.5));
   const glm::dvec3 of_splats = glm::dvec3(0.0625 + 0.5625, 0.5, 2.0) / 16.0;
   for (int channel = 0; channel < 3; ++channel)
@@ -261,6 +264,24 @@ TEST(Film, splats_are_light_of_the_pixel_but_no_samples) {
   EXPECT_FALSE(film.add_splat(1, {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}));
   EXPECT_EQ(film.rejected_samples(), 2u);
   EXPECT_THROW(film.add_splat(2, glm::dvec3(1.0)), std::out_of_range);
+}
+
+/// 6, 2 and no samples are 8 light paths for 3 pixels, wherever they begin: a splat counts 3 / 8.
+TEST(Film, splats_are_divided_by_the_light_paths_of_all_pixels) {
+  Film film({3, 1}, 1.0);
+  for (int i = 0; i < 6; ++i) ASSERT_TRUE(film.add(0, glm::dvec3(0.5)));
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(film.add(1, glm::dvec3(0.25)));
+  for (int pixel = 0; pixel < 3; ++pixel) ASSERT_TRUE(film.add_splat(pixel, glm::dvec3(2.0)));
+  EXPECT_EQ(film.samples_for_each_pixel(), 8.0 / 3);
+  EXPECT_EQ(film.mean(0), glm::dvec3(0.5 + 0.75));
+  EXPECT_EQ(film.mean(1), glm::dvec3(0.25 + 0.75));
+  EXPECT_EQ(film.mean(2), glm::dvec3(0.0)) << "no samples, so black";
+  EXPECT_DOUBLE_EQ(film.variance_of_splats(0).x, 0.75 * 0.75);
+  EXPECT_EQ(film.variance_of_mean(1), film.variance_of_splats(1)) << "its samples are equal";
+  const Film sent = Film::from_bytes({3, 1}, 1.0, FilmSums::means_and_variances, film.bytes());
+  EXPECT_EQ(sent.sha256(), film.sha256());
+  film.merge(sent);
+  EXPECT_EQ(film.sha256(), sent.sha256()) << "twice the samples and twice the splats";
 }
 
 TEST(Film, splats_do_not_depend_on_their_order_and_are_merged_and_sent) {

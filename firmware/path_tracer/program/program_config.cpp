@@ -38,7 +38,6 @@ void require_bidirectional(const ProgramConfig& config) {
           with_these("1"));
   require(config.skips_empty_blocks, "empty_blocks", "process", with_these("skip"));
   require(config.cull_shadow_rays, "shadow_rays", "all", with_these("facing"));
-  require(!config.hands_rays_to_unit(), "traversal", name_of(config.traversal), with_these("any other"));
   require(!config.is_stream(), "execution", name_of(config.execution), with_these(name_of(Execution::mtap)));
 }
 

@@ -84,6 +84,7 @@ model::Fault fault_of(const std::string& text) {
   const std::vector<std::string> parts = split_at_commas(text);
   model::Fault fault;
   fault.kind = fault_kind_of(parts.empty() ? "" : parts[0]);
+  const std::string place = "--fault " + text + ": ";
   std::vector<FaultKey> missing = keys_of(info_of(fault.kind));
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::size_t equals = parts[i].find('=');
@@ -91,16 +92,16 @@ model::Fault fault_of(const std::string& text) {
     bool known = false;
     for (FaultKey& key : missing) {
       if (!key.has || key.name != name || equals == std::string::npos) continue;
-      set(fault, name, number_of("--fault " + text + ": " + name, parts[i].substr(equals + 1), key.most));
+      set(fault, name, number_of(std::string(place).append(name), parts[i].substr(equals + 1), key.most));
       key.has = false;
       known = true;
     }
     if (!known)
-      throw InputError("--fault " + text + ": found '" + parts[i] + "', allowed is each of " +
-                       text_of({fault.kind}) + " once");
+      throw InputError(place + "found '" + parts[i] + "', allowed is each of " + text_of({fault.kind}) +
+                       " once");
   }
   for (const FaultKey& key : missing)
-    if (key.has) throw InputError("--fault " + text + ": found no " + key.name + "=, allowed is one");
+    if (key.has) throw InputError(place + "found no " + key.name + "=, allowed is one");
   return fault;
 }
 

@@ -46,6 +46,14 @@ Csx600::Csx600(const sc_core::sc_module_name& name, const ChipConfig& config, Ti
   if (memory == MonoMemory::bound_outside || arrays() > 1) share_memory();
 }
 
+void Csx600::inject(std::vector<Fault> faults) {
+  faults_ = std::make_unique<FaultInjector>(std::move(faults), control_unit.poly_memory(),
+                                            FaultInjector::Ddr{mono_ddr->memory().data(), config_.ddr.ecc});
+  control_unit.set_faults(faults_.get());
+  pio_engine.set_faults(faults_.get());
+  mono_ddr->set_faults(faults_.get());
+}
+
 void Csx600::share_memory() {
   for (const std::unique_ptr<MtapArray>& array : arrays_) array->control_unit.share_memory();
 }

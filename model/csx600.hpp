@@ -7,6 +7,7 @@
 
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
+#include "model/faults/fault_injector.hpp"
 #include "model/host_link/host_link.hpp"
 #include "model/memory/mono_ddr.hpp"
 #include "model/memory/on_chip_sram.hpp"
@@ -66,6 +67,14 @@ class Csx600 : public sc_core::sc_module {
   const ChipConfig& config() const { return config_; }
   /// Others than this chip may use its mono memory (ControlUnit::share_memory()).
   void share_memory();
+  /// Breaks this chip, which has one array and a DDR of its own. To be called before the run, once.
+  void inject(std::vector<Fault> faults);
+  /// All zero for a chip without faults.
+  FaultCounts fault_counts() const { return faults_ ? faults_->counts() : FaultCounts{}; }
+  /// After the run: throws cn::MachineFault if faults were found that cannot be corrected.
+  void require_no_detected_fault() const {
+    if (faults_) faults_->throw_if_detected();
+  }
   int arrays() const { return static_cast<int>(arrays_.size()); }
   MtapArray& array(int number) { return *arrays_.at(std::size_t(number)); }
   const MtapArray& array(int number) const { return *arrays_.at(std::size_t(number)); }
@@ -88,6 +97,7 @@ class Csx600 : public sc_core::sc_module {
   void join(MtapArray& array);
   void join_search_unit();
 
+  std::unique_ptr<FaultInjector> faults_;
   Initiator search_initiator_ = Initiator::host;  ///< the search unit at the network
 };
 

@@ -27,6 +27,7 @@ void add_commands(CLI::App& app) {
   testbench::add_validate_command(app);
   testbench::add_waves_command(app);
   testbench::add_sweep_command(app);
+  testbench::add_inject_command(app);
   testbench::add_sensitivity_command(app);
   testbench::add_estimate_command(app);
   testbench::add_report_command(app);

@@ -20,6 +20,7 @@ struct ChipConfig {
     double clock_hz;
     int pes;     ///< of an array
     int arrays;  ///< each with a control unit and a PIO engine of its own, on one network
+    std::uint64_t watchdog_cycles = 0;  ///< the longest that firmware may run; 0: no watchdog
   } chip;
 
   struct Poly {
@@ -71,6 +72,7 @@ struct ChipConfig {
     int refresh_cycles;
     int ecc_cycles;          ///< added to each access
     int queue_transactions;  ///< at most so many at a time; loosely timed there is no bound
+    bool ecc = true;         ///< felt by faults only (model/faults)
   } ddr;
 
   /// Memory on the chip that all units reach over the network. No bytes: the chip has none.

@@ -48,6 +48,9 @@ void declare_chip(Parameters& table) {
       integer<group, &Chip::arrays>("chip.arrays", "arrays", 1, {1, 4}, Confidence::vendor,
                                     "arrays of PEs on one network, each with a control unit and a PIO "
                                     "engine of its own: one [S1]")));
+  table.push_back(integer<group, &Chip::watchdog_cycles>(
+      "chip.watchdog_cycles", "cycles", 0, {0, std::int64_t{1} << 60}, Confidence::assumed,
+      "the longest that firmware may run before the run ends as failed; 0: no watchdog"));
 }
 
 void declare_poly(Parameters& table) {
@@ -287,6 +290,11 @@ void declare_ddr_timing(Parameters& table) {
       "ddr.queue_transactions", "transactions", 16, {1, 1024}, assumed,
       "that the memory controller takes at a time, enough to hide a page hit; felt by approximately timed "
       "runs only"));
+  table.push_back(
+      {"ddr.ecc", "-", true, TrueOrFalse{}, Confidence::vendor,
+       "8 more bits for each 64, of 72-bit modules [S1], correct one wrong bit and detect two; felt "
+       "by faults only",
+       &Field<group, &Ddr::ecc>::read, &Field<group, &Ddr::ecc>::write});
 }
 
 void declare_on_chip_sram(Parameters& table) {

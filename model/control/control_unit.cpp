@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "model/faults/fault_injector.hpp"
 #include "model/pe_array/stolen_cycles.hpp"
 
 namespace model {
@@ -47,6 +48,7 @@ void ControlUnit::run() {
     start_asked_ = false;
     firmware_started_ = true;
     ledger_.start(time_.present());
+    if (faults_ != nullptr) faults_->firmware_starts(now());
     threads_.run_first([this] {
       if (firmware_) firmware_(*this);
     });
@@ -61,6 +63,14 @@ void ControlUnit::begin_again() {
   threads_.begin_again();
   mono_access_.empty_cache();
   timed_ = true;
+}
+
+void ControlUnit::time_passed() {
+  if (faults_ != nullptr) faults_->time_passes(now());
+  const std::uint64_t limit = config_.chip.watchdog_cycles;
+  if (limit != 0 && now() - start_cycle() > limit)
+    throw cn::MachineFault(std::string(kWatchdogMessage) + "the firmware has run for more than " +
+                           std::to_string(limit) + " cycles (chip.watchdog_cycles)");
 }
 
 void ControlUnit::require_finished() const {
@@ -98,6 +108,7 @@ void ControlUnit::issue_mono(std::uint64_t instructions) {
   const double cycles = config_.poly.code_quality_factor *
                         config_.poly.cycles[std::size_t(cn::InstructionClass::mono)] * double(instructions);
   ledger_.spend(CycleCause::mono, static_cast<Cycles>(cycles + 0.5));
+  time_passed();
   threads_.let_higher_priority_run();
 }
 
@@ -115,6 +126,8 @@ void ControlUnit::retire(const char* kernel, const cn::IssueTree& issued) {
                 stolen_cycles(words, config_.pio.stolen_sram_cycles, cost.sram_cycles, cost.cycles));
   semaphores_.record().ran_kernel(kernel, now());
   report_kernel_end(kernel, issued, start);
+  if (faults_ != nullptr) faults_->kernel_ends(now());
+  time_passed();
   time_.synchronise_for_observer();
   threads_.let_higher_priority_run();
 }
@@ -138,7 +151,14 @@ void ControlUnit::start_transfer(const cn::Transfer& transfer) {
   ledger_.spend(CycleCause::transfer_call, Cycles(config_.control.transfer_call_cycles));
   time_.settle_pio(now());
   ledger_.report_begin(CycleCause::wait_pio_queue);
-  ledger_.spend_until(pio->enqueue(transfer, now()), CycleCause::wait_pio_queue);
+  if (faults_ == nullptr) {
+    ledger_.spend_until(pio->enqueue(transfer, now()), CycleCause::wait_pio_queue);
+  } else {
+    cn::Transfer in_truth = transfer;
+    in_truth.enabled = faults_->enabled_for_transfer(transfer.enabled);
+    ledger_.spend_until(pio->enqueue(in_truth, now()), CycleCause::wait_pio_queue);
+  }
+  time_passed();
   threads_.let_higher_priority_run();
 }
 
@@ -160,6 +180,7 @@ void ControlUnit::sem_wait(cn::Semaphore semaphore) {
   threads_.let_higher_priority_run();
   time_.settle_pio(now());
   threads_.wait(semaphore);
+  time_passed();
   if (access_observer() != nullptr) access_observer()->waited(semaphore);
   time_.synchronise_for_observer();
 }

@@ -25,6 +25,8 @@
 
 namespace model {
 
+class FaultInjector;
+
 /// Runs firmware: the chip's one instruction stream. The firmware's C++ executes at once on a SystemC process
 /// and runs ahead by a local cycle count; it synchronises with SystemC time where the host can see it
 /// (semaphores shared with the host, the end) and wherever an observer asks for it. With an event queue it is
@@ -88,6 +90,9 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
   /// memories.
   void follow(const AddressMap& map) { mono_access_.follow(map); }
 
+  /// Breaks what runs on this control unit; may be null, otherwise lives as long as it.
+  void set_faults(FaultInjector* faults) { faults_ = faults; }
+
   /// Firmware may program this unit, which lives as long as the control unit.
   void join(SearchUnit& unit) { search_unit_ = &unit; }
 
@@ -116,6 +121,8 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
  private:
   void run();
   void begin_again();
+  /// After each operation that took time: what is broken breaks, and firmware that runs for ever ends.
+  void time_passed();
   void report_kernel_begin(const char* kernel, const cn::IssueTree& issued);
   void report_kernel_end(const char* kernel, const cn::IssueTree& issued, Cycles start);
   void forget_mono_pointer(sc_dt::uint64, sc_dt::uint64) { mono_access_.forget_pointer(); }
@@ -126,6 +133,7 @@ class ControlUnit : public sc_core::sc_module, public cn::Machine, public Semaph
 
   const ChipConfig& config_;
   SearchUnit* search_unit_ = nullptr;
+  FaultInjector* faults_ = nullptr;
   const bool approximately_timed_;
   PeArray& pe_array_;
   CycleLedger ledger_;

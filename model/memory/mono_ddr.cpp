@@ -1,5 +1,6 @@
 #include "model/memory/mono_ddr.hpp"
 
+#include "model/faults/fault_injector.hpp"
 #include "model/memory/plain_access.hpp"
 #include "model/time/annotated_delay.hpp"
 
@@ -68,6 +69,7 @@ tlm::tlm_response_status MonoDdr::access_plainly(const tlm::tlm_generic_payload&
   const tlm::tlm_response_status response = check_access(transaction, memory_.size_bytes());
   if (response != tlm::TLM_OK_RESPONSE) return response;
   const std::uint64_t bytes = transaction.get_data_length();
+  if (faults_ != nullptr) faults_->accesses_ddr(transaction.get_address(), bytes, transaction.is_write());
   move_data(transaction, memory_.data(), bytes);
   finish = timing_.access(transaction.get_address(), bytes, transaction.is_write(), arrival).finish;
   return response;
@@ -79,6 +81,9 @@ tlm::tlm_response_status MonoDdr::serve(PeAddresses& addresses, sc_core::sc_time
   addresses.first_data = delay;
   if (!pieces.within(memory_.size_bytes())) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
   if (pieces.runs().empty()) return tlm::TLM_OK_RESPONSE;
+  if (faults_ != nullptr)
+    for (const MonoPieces::Run& run : pieces.runs())
+      faults_->accesses_ddr(run.address, run.bytes, pieces.write());
   const Cycles arrival = cycle_of_delay(clock_, delay);
   const DdrTiming::Access access = timing_.access(pieces.runs(), pieces.write(), arrival);
   addresses.first_data = delay_until(clock_, access.start);

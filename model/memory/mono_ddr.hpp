@@ -15,6 +15,8 @@
 
 namespace model {
 
+class FaultInjector;
+
 /// Mono memory: DDR2 behind one TLM-2.0 target socket. Reads and writes of any length; no byte enables, no
 /// streaming. The delay in is the arrival of the access, the delay out the cycle after its last byte
 /// (DdrTiming).
@@ -36,6 +38,8 @@ class MonoDdr : public sc_core::sc_module {
   void set_observer(DdrObserver* observer, bool with_commands) {
     timing_.set_observer(observer, with_commands);
   }
+  /// Is told of every access; may be null, otherwise lives as long as the memory.
+  void set_faults(FaultInjector* faults) { faults_ = faults; }
   LazyMemory& memory() { return memory_; }
 
  private:
@@ -57,6 +61,8 @@ class MonoDdr : public sc_core::sc_module {
   DdrTiming timing_;
   LazyMemory memory_;
   Cycles dmi_latency_cycles_;
+
+  FaultInjector* faults_ = nullptr;
 
   EventQueue* event_queue_;
   std::optional<AtTarget> at_target_;

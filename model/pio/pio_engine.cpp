@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/cn/chip/access_observer.hpp"
+#include "model/faults/fault_injector.hpp"
 #include "model/pio/at_pio_service.hpp"
 #include "model/pio/lt_pio_service.hpp"
 
@@ -24,8 +26,7 @@ PioEngine::PioEngine(const sc_core::sc_module_name& name, const ChipConfig& conf
              config.pio.consolidate_equal_addresses},
       timing_(config.pio),
       mono_(address_map(config), poly),
-      requests_(config.pio, timing_,
-                [this](int semaphore, Cycles at) { semaphores->signal_at(semaphore, at); }),
+      requests_(config.pio, timing_, [this](int semaphore, Cycles at) { signal(semaphore, at); }),
       transactions_(clock, mono_socket, poly_socket, mono_) {
   port.bind(*this);
   mono_socket.register_invalidate_direct_mem_ptr(this, &PioEngine::forget_mono_pointer);
@@ -62,6 +63,14 @@ Cycles PioEngine::enqueue(const cn::Transfer& transfer, Cycles now) {
   PioStatistics& statistics = requests_.statistics();
   statistics.max_queue_depth = std::max(statistics.max_queue_depth, requests_.waiting());
   return accepted;
+}
+
+void PioEngine::signal(int semaphore, Cycles at) {
+  if (faults_ == nullptr) return semaphores->signal_at(semaphore, at);
+  const std::vector<Cycles> signals = faults_->signals(at);
+  for (const Cycles each : signals) semaphores->signal_at(semaphore, each);
+  // One signal too many: from now on a wait proves no request to be over, as the hazard checker is to know.
+  if (signals.size() > 1 && poly_.observer() != nullptr) poly_.observer()->signalled({semaphore});
 }
 
 Cycles PioEngine::wait_for_room(cn::Direction direction, Cycles now) {

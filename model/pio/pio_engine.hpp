@@ -20,6 +20,7 @@ namespace model {
 
 class AtPioService;
 class EventQueue;
+class FaultInjector;
 
 /// The programmed-I/O engine. Data move when a request is queued; time is booked when it is served: setup and
 /// PE side from PioTiming, order from PioQueue, memory side by transactions through `mono_socket`, port use
@@ -55,12 +56,15 @@ class PioEngine : public sc_core::sc_module, public PioPort {
   /// Mono memory is what `map` says, which lives as long as the engine; without it, the chip's own memories.
   void follow(const AddressMap& map) { mono_.follow(map); }
   void set_observer(PioObserver* observer) { requests_.set_observer(observer); }
+  /// Breaks the signals of finished requests; may be null, otherwise lives as long as the engine.
+  void set_faults(FaultInjector* faults) { faults_ = faults; }
   /// From now on requests take their time but move no data: for firmware that looks at none.
   void leave_data(bool leave) { leaves_data_ = leave; }
   const PioStatistics& statistics() const { return requests_.statistics(); }
   int queue_depth() const { return requests_.waiting(); }
 
  private:
+  void signal(int semaphore, Cycles at);
   /// Lets the service make room; returns when there is some.
   Cycles wait_for_room(cn::Direction direction, Cycles now);
   void describe(const cn::Transfer& transfer, PioRequest& request);
@@ -79,6 +83,7 @@ class PioEngine : public sc_core::sc_module, public PioPort {
   std::unique_ptr<PioService> service_;
   AtPioService* at_service_ = nullptr;  ///< whom nb_transport_bw concerns; approximately timed only
   bool leaves_data_ = false;
+  FaultInjector* faults_ = nullptr;
 };
 
 }  // namespace model

@@ -16,6 +16,7 @@ void add_bench_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_waves_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
+void add_inject_command(CLI::App& app);
 void add_sensitivity_command(CLI::App& app);
 void add_estimate_command(CLI::App& app);
 void add_report_command(CLI::App& app);

@@ -11,6 +11,7 @@
 #include "testbench/commands/output_files.hpp"
 #include "testbench/commands/sampling_options.hpp"
 #include "testbench/commands/wave_options.hpp"
+#include "testbench/faults/fault_text.hpp"
 #include "testbench/film/black_film.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/observe/observation.hpp"
@@ -47,6 +48,7 @@ struct RenderCommand {
   bool firmware_search = false;  ///< natively, too
   OutputFiles outputs;
   bool statistics_text_wanted = false;
+  std::vector<std::string> faults;
   ObservationOption observation;
   ImportanceOption importance;
   PassOptions passes;
@@ -82,6 +84,10 @@ RenderRequest RenderCommand::make_request() const {
         "--waves, --transactions, --timeline: a native run has no clock and records no waves; leave out "
         "--native");
   request.options.observation = observation.options(request.options.chip);
+  for (const std::string& fault : faults) request.options.faults.push_back(fault_of(fault));
+  if (native && !faults.empty())
+    throw InputError("--fault: found with --native, which has no hardware to break; leave out one");
+  require_faults(request.options);
   return request;
 }
 
@@ -150,6 +156,8 @@ std::optional<PreparedRender> RenderCommand::prepare(Ranks& ranks) const {
   std::optional<PreparedRender> prepared;
   try {
     RenderRequest request = make_request();
+    if (!faults.empty())
+      throw InputError("--fault: found with several passes or under mpirun; allowed: one pass, one process");
     if (observation.any())
       throw InputError("--waves, --transactions, --timeline: found " +
                        std::string(ranks.alone() ? "with several passes; allowed: one pass"
@@ -280,6 +288,10 @@ void RenderCommand::run() {
   print_notes(loaded.notes);
   print_head(loaded, request);
   std::fputs(render_table(request, result).c_str(), stdout);
+  if (!faults.empty())
+    std::printf("  %llu faults injected, ECC corrected %llu words\n",
+                static_cast<unsigned long long>(result.faults.injected),
+                static_cast<unsigned long long>(result.faults.corrected));
   if (outputs.path("--exr").empty() && outputs.path("--png").empty())
     std::puts("  no image written: name one with --exr or --png");
   require_observed(result);
@@ -315,6 +327,13 @@ void add_render_command(CLI::App& app) {
   state->firmware.add_to(command, state->options.program,
                          {OptionGroup::bins, OptionGroup::sampling, OptionGroup::tree});
   state->observation.add_to(command);
+  command
+      .add_option(
+          "--fault", state->faults,
+          "Break the hardware, KIND,cycle=N,... as poly_sram,cycle=1000,pe=5,address=64,bit=3; kinds: " +
+              fault_kind_names() + "; may be repeated")
+      ->type_name("FAULT")
+      ->allow_extra_args(false);
   command.callback([state] { state->run(); });
 }
 

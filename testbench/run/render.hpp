@@ -13,6 +13,7 @@
 #include "firmware/path_tracer/program/work.hpp"
 #include "model/config/chip_config.hpp"
 #include "model/config/timing_style.hpp"
+#include "model/faults/fault.hpp"
 #include "testbench/film/film.hpp"
 #include "testbench/mono_image/mono_image.hpp"
 #include "testbench/observe/observation_options.hpp"
@@ -38,6 +39,7 @@ struct RenderOptions {
   ObservationOptions observation;  ///< on the chip only
   /// Native runs find hits through the simulator's tree (search_natively()).
   bool searches_natively = false;
+  std::vector<model::Fault> faults = {};  ///< on a chip of one array, loosely timed (require_faults())
   bool check_hazards = false;  ///< with kernels that report their accesses (model/hazards/hazard_checker.hpp)
 };
 
@@ -50,7 +52,8 @@ struct RenderResult {
   std::optional<ChipStatistics> chip;  ///< of a run on the SystemC chip; of all chips of the board together
   std::vector<ChipStatistics> chips = {};  ///< of each chip of a board; empty if there is one
   std::string observation_failures;        ///< files that could not be completed, in one line
-  double cpu_seconds = 0;                  ///< of the run itself, without loading and writing
+  model::FaultCounts faults = {};
+  double cpu_seconds = 0;  ///< of the run itself, without loading and writing
   double wall_seconds = 0;
 };
 

@@ -135,10 +135,12 @@ class Board {
     const auto image = options.image ? options.image : make_image(scene, options);
     for (int number = 0; number < config_.board.chips; ++number)
       add_chip(number, scene, *image, shares, options.timing);
+    if (!options.faults.empty()) chips_.front()->inject(options.faults);
   }
 
   void require_finished() const {
     for (const auto& array : arrays_) array->require_finished();
+    for (const auto& chip : chips_) chip->require_no_detected_fault();
   }
   RenderResult finish() {
     RenderResult result = arrays_.front()->finish();
@@ -151,6 +153,7 @@ class Board {
             (result.observation_failures.empty() ? "" : "; ") + other.observation_failures;
     }
     result.chip = statistics();
+    result.faults = chips_.front()->fault_counts();
     if (chips_.size() > 1) result.chips = statistics_of_chips();
     return result;
   }

@@ -151,7 +151,7 @@ TEST(ParameterTable, CoversEveryField) {
   EXPECT_EQ(keys_of("energy.picojoules"), cn::kInstructionClasses - 1) << "mono has no energy of its own";
   EXPECT_EQ(keys_of("energy"),
             field_count<std::decay_t<decltype(energy)>>() - 1 + keys_of("energy.picojoules"));
-  EXPECT_EQ(field_count<ChipConfig::Chip>(), 3U);
+  EXPECT_EQ(field_count<ChipConfig::Chip>(), 4U);
   EXPECT_EQ(field_count<ChipConfig::Pio>(), 9U);
 }
 

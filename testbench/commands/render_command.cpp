@@ -275,11 +275,12 @@ void RenderCommand::run_in_passes(Ranks& ranks) {
     return render_in_passes(ranks, loaded, request, *plan, passes.budget(native), actions);
   }();
   if (!render) return;
+  const bool is_partial = render->end == PassEnd::interrupted;
+  if (is_partial && render->passes == 0) throw RunError("interrupted in the first pass; nothing was written");
   std::map<std::string, std::string> of_image = provenance;
   of_image["csx600.passes"] = std::to_string(render->passes);
   of_image["csx600.segments"] = std::to_string(render->segments);
   of_image["csx600.image_sha256"] = render->film.sha256();
-  const bool is_partial = render->end == PassEnd::interrupted;
   write_image(render->film, of_image, is_partial);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
   print_notes(loaded.notes);

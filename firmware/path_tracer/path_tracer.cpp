@@ -72,7 +72,7 @@ void PathTracer::run(const Progress& progress) {
     steps_.load_ahead();
     if (radiance_.is_left() && !next_is_ray_step()) radiance_.run_to_end();
     if (steps_.next() == nullptr) break;
-    if (progress && !progress(path_stage_->camera_rays().issued())) return;
+    if (progress && !progress(path_stage_->camera_rays().issued())) path_stage_->stop_camera_rays();
     run_next_step();
   }
   radiance_.announce_results();

@@ -1,5 +1,6 @@
 #include "testbench/commands/output_files.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "testbench/files/atomic_file.hpp"
@@ -53,6 +54,11 @@ const std::string& OutputFiles::path(const std::string& option) const {
   for (const auto& [name, path] : files_)
     if (name == option) return path;
   throw std::logic_error("no output option " + option);
+}
+
+bool OutputFiles::any() const {
+  return std::any_of(files_.begin(), files_.end(),
+                     [](const OutputOption& file) { return !file.second.empty(); });
 }
 
 std::vector<OutputOption> OutputFiles::with(const std::vector<OutputOption>& others) const {

@@ -30,6 +30,9 @@ class OutputFiles {
   /// "" where the option was not given.
   const std::string& path(const std::string& option) const;
 
+  /// Whether any option was given.
+  bool any() const;
+
   /// Before the run: throws InputError for a file that cannot be written, and for one that two options name.
   /// @param others are written by somebody else, who checks that they can be
   void require_writable(const std::vector<OutputOption>& others = {}) const;

@@ -16,11 +16,14 @@
 #include "testbench/film/image_file.hpp"
 #include "testbench/observe/observation.hpp"
 #include "testbench/run/program_choice.hpp"
+#include "testbench/run/render_job.hpp"
 #include "testbench/run/simulator_choice.hpp"
 #include "testbench/scene_file/scene_file.hpp"
 #include "testbench/statistics/rank_render.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/statistics/statistics_file.hpp"
+#include "testbench/sweep/point_store.hpp"
+#include "testbench/system/digest.hpp"
 #include "testbench/system/error.hpp"
 #include "testbench/system/interrupt.hpp"
 #include "testbench/system/progress_bar.hpp"
@@ -64,12 +67,15 @@ struct RenderCommand {
   void suit_to(const Scene& loaded, RenderRequest& request) const;
   std::vector<InputName> inputs(const Scene& loaded) const;
   void list_samples(MeanSamples of_pixels, RenderRequest& request) const;
-  void write_image(const Film& film, const std::map<std::string, std::string>& provenance) const;
+  void write_image(const Film& film, std::map<std::string, std::string> provenance, bool is_partial) const;
+  void require_whole(bool is_partial, const Film& film, std::uint64_t paths) const;
+  std::string checkpoint_identity(const PreparedRender& prepared) const;
 };
 
 RenderRequest RenderCommand::make_request() const {
   RenderRequest request{scene.path(), options, native};
   request.importance = importance.file();
+  if (!passes.has_checkpoint()) passes.require_checkpoint();
   passes.budget(native);  // whether it is allowed
   request.options.chip = chip.chip();
   request.options.timing = timing.style();
@@ -126,10 +132,33 @@ void RenderCommand::list_samples(MeanSamples of_pixels, RenderRequest& request) 
       testbench::list_samples(SampleCounts(counts.size(), 0), counts, request.options.program.pixel_stride);
 }
 
-void RenderCommand::write_image(const Film& film,
-                                const std::map<std::string, std::string>& provenance) const {
+void RenderCommand::write_image(const Film& film, std::map<std::string, std::string> provenance,
+                                bool is_partial) const {
+  if (is_partial) provenance["csx600.partial"] = "true";
   if (!outputs.path("--exr").empty()) write_exr(outputs.path("--exr"), film, provenance);
   if (!outputs.path("--png").empty()) write_png(outputs.path("--png"), film);
+}
+
+/// Throws RunError, once everything is written, for a render that was interrupted.
+/// @param paths that it should have had
+void RenderCommand::require_whole(bool is_partial, const Film& film, std::uint64_t paths) const {
+  if (!is_partial) return;
+  const double done = film.samples().mean * film.pixel_count();
+  char text[96];
+  std::snprintf(text, sizeof(text), "interrupted after %.0f of %.0f paths", done, double(paths));
+  std::string error = text;
+  if (outputs.any()) error += "; what was written is marked partial";
+  if (passes.has_checkpoint()) error += "; the same command with --resume goes on";
+  throw RunError(error);
+}
+
+/// Build and importance. An importance map may change under its name.
+std::string RenderCommand::checkpoint_identity(const PreparedRender& prepared) const {
+  Sha256 digest;
+  digest.add(build_digest(""));
+  digest.add({reinterpret_cast<const char*>(prepared.importance.data()),
+              prepared.importance.size() * sizeof(double)});
+  return digest.finish();
 }
 
 void print_film_notes(const Scene& loaded, const Film& film, path_tracer::Program program) {
@@ -162,10 +191,11 @@ std::optional<PreparedRender> RenderCommand::prepare(Ranks& ranks) const {
       throw InputError("--waves, --transactions, --timeline: found " +
                        std::string(ranks.alone() ? "with several passes; allowed: one pass"
                                                  : "under mpirun; allowed: one process"));
-    if (ranks.is_first()) outputs.require_writable(observation.outputs());
+    if (ranks.is_first()) outputs.require_writable({passes.checkpoint_output()});
+    if (ranks.is_first()) passes.require_checkpoint();
     size.require_valid();
     Scene loaded = size.resized(scene.load());
-    if (ranks.is_first()) outputs.require_no_input(inputs(loaded));
+    if (ranks.is_first()) outputs.require_no_input(inputs(loaded), {passes.checkpoint_output()});
     suit_to(loaded, request);
     std::vector<double> of_pixels = importance.importance(loaded.film, request.options.work.samples);
     if (!passes.any()) list_samples(of_pixels, request);
@@ -202,7 +232,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
     if (ranks.is_first()) bar.emplace("render (ranks)");
     return render_on_ranks(ranks, loaded, request, [&](double share) {
       if (bar) bar->show(share);
-      return !interrupt.requested();
+      return !ranks.stop_requested();
     });
   }();
   if (!render) return;
@@ -211,7 +241,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
       {"csx600.ranks", std::to_string(ranks.size())},
       {"csx600.segments", std::to_string(render->segments)},
       {"csx600.image_sha256", render->film.sha256()}};
-  write_image(render->film, provenance);
+  write_image(render->film, provenance, render->is_partial);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
   print_notes(loaded.notes);
   print_film_notes(loaded, render->film, request.options.program.program);
@@ -221,6 +251,7 @@ void RenderCommand::run_on_ranks(Ranks& ranks) {
   if (render->simulated_seconds)
     std::printf(", %.6f s simulated on the chip that took longest", *render->simulated_seconds);
   std::printf(", %.2f s CPU\n", render->cpu_seconds);
+  require_whole(render->is_partial, render->film, paths_of(loaded, request.options));
 }
 
 /// Each pass is shared by all ranks.
@@ -240,21 +271,26 @@ void RenderCommand::run_in_passes(Ranks& ranks) {
         [&](const Film& film, int pass) { passes.write_snapshot(film, pass, provenance); },
         [&](double share) {
           if (bar) bar->show(share);
-          return !interrupt.requested();
-        }};
+          return !ranks.stop_requested();
+        },
+        ranks.is_first() ? passes.checkpoint(checkpoint_identity(*prepared)) : std::nullopt};
     return render_in_passes(ranks, loaded, request, *plan, passes.budget(native), actions);
   }();
   if (!render) return;
+  const bool is_partial = render->end == PassEnd::interrupted;
+  if (is_partial && render->passes == 0) throw RunError("interrupted in the first pass; nothing was written");
   std::map<std::string, std::string> of_image = provenance;
   of_image["csx600.passes"] = std::to_string(render->passes);
   of_image["csx600.segments"] = std::to_string(render->segments);
   of_image["csx600.image_sha256"] = render->film.sha256();
-  write_image(render->film, of_image);
+  write_image(render->film, of_image, is_partial);
   outputs.write("--stats", [&] { return statistics_json(render->statistics); });
   print_notes(loaded.notes);
   print_film_notes(loaded, render->film, request.options.program.program);
   print_head(loaded, request);
   std::fputs(pass_table(*render, *plan).c_str(), stdout);
+  require_whole(is_partial, render->film,
+                std::uint64_t(total(prepared->importance) * request.options.work.samples));
 }
 
 void RenderCommand::run() {
@@ -279,7 +315,7 @@ void RenderCommand::run() {
     return native ? render_natively(loaded, request.options, progress)
                   : render_on_chip(loaded, request.options, progress);
   }();
-  write_image(result.film, render_provenance(request, result));
+  write_image(result.film, render_provenance(request, result), result.is_partial);
   outputs.write("--stats", [&] {
     return statistics_for_file(outputs.path("--stats"), render_statistics(request, result));
   });
@@ -295,6 +331,7 @@ void RenderCommand::run() {
   if (outputs.path("--exr").empty() && outputs.path("--png").empty())
     std::puts("  no image written: name one with --exr or --png");
   require_observed(result);
+  require_whole(result.is_partial, result.film, paths_of(loaded, request.options));
 }
 
 }  // namespace

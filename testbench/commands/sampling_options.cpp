@@ -7,6 +7,7 @@
 #include "testbench/files/atomic_file.hpp"
 #include "testbench/film/image_file.hpp"
 #include "testbench/sampling/adaptive_plan.hpp"
+#include "testbench/sampling/fixed_plan.hpp"
 #include "testbench/sampling/importance_map.hpp"
 #include "testbench/sampling/time_budget.hpp"
 #include "testbench/system/error.hpp"
@@ -91,9 +92,22 @@ void PassOptions::add_to(CLI::App& command) {
           "as many paths as all before it")
       ->check(error_of_no_folder, "")
       ->type_name("FOLDER");
+  command
+      .add_option("--checkpoint", checkpoint_,
+                  "Keep what is done in this file, from which --resume goes on after a kill or a loss of "
+                  "power; the render is made in passes of about a million paths")
+      ->check(error_of_no_file, "")
+      ->type_name("FILE");
+  command
+      .add_option("--every", every_,
+                  "Write the checkpoint at the first end of a pass after so much wall time; by default 60s")
+      ->check(error_of_duration, "")
+      ->type_name("TIME");
+  command.add_flag("--resume", resumes_, "Go on from the file of --checkpoint, to the same image");
 }
 
 std::unique_ptr<SamplePlan> PassOptions::plan(const std::vector<double>& importance, int samples) const {
+  if (has_checkpoint()) return std::make_unique<FixedPlan>(importance, samples);
   if (has_target()) return std::make_unique<AdaptivePlan>(importance, samples, target_error_);
   return std::make_unique<ShapedPlan>(importance, samples);
 }
@@ -108,6 +122,34 @@ std::optional<TimeBudget> PassOptions::budget(bool native) const {
         "--budget-clock: found chip with --native, a native run has no clock; allowed is simulator");
   return TimeBudget{*parse_duration(budget_),
                     clock_.value_or(native ? BudgetClock::simulator : BudgetClock::chip)};
+}
+
+void PassOptions::require_checkpoint() const {
+  if (!has_checkpoint()) {
+    if (resumes_ || !every_.empty())
+      throw InputError(std::string(resumes_ ? "--resume" : "--every") +
+                       ": found without --checkpoint; allowed with it");
+    return;
+  }
+  if (has_target() || !budget_.empty() || !snapshots_.empty())
+    throw InputError(
+        "--checkpoint: found with --target-error, --time-budget or --snapshots, whose passes end elsewhere; "
+        "allowed without them");
+  require_writable(checkpoint_);
+  std::error_code ignored;
+  if (!resumes_ && std::filesystem::exists(checkpoint_, ignored))
+    throw InputError("--checkpoint: found '" + checkpoint_ +
+                     "', which exists; allowed: a new file, or --resume to go on from this one");
+}
+
+std::optional<CheckpointOptions> PassOptions::checkpoint(const std::string& identity) const {
+  if (!has_checkpoint()) return std::nullopt;
+  CheckpointOptions options;
+  options.file = checkpoint_;
+  if (!every_.empty()) options.every_seconds = *parse_duration(every_);
+  options.resumes = resumes_;
+  options.identity = identity;
+  return options;
 }
 
 std::filesystem::path PassOptions::snapshot_file(int pass) const {
@@ -133,10 +175,18 @@ void PassOptions::write_snapshot(const Film& film, int pass,
   write_exr(snapshot_file(pass), film, provenance);
 }
 
+namespace {
+
+const char* text_of(PassEnd end) {
+  if (end == PassEnd::plan_complete) return "";
+  return end == PassEnd::time_over ? ", the next would be late" : ", the next was interrupted";
+}
+
+}  // namespace
+
 std::string pass_table(const PassRender& render, const SamplePlan& plan) {
   const PixelSamples samples = render.film.samples();
-  std::string table = row("passes", std::to_string(render.passes) +
-                                        (render.end == PassEnd::time_over ? ", the next would be late" : ""));
+  std::string table = row("passes", std::to_string(render.passes) + text_of(render.end));
   table += row("paths a pixel", text("%.2f", samples.mean) + ", from " + std::to_string(samples.fewest) +
                                     " to " + std::to_string(samples.most));
   if (plan.error()) table += row("relative RMSE", text("%.4f, as the samples tell", *plan.error()));

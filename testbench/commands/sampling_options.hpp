@@ -30,14 +30,15 @@ class ImportanceOption {
   std::string file_;
 };
 
-/// --target-error, --time-budget, --budget-clock, --snapshots: options that make a render one of several
-/// passes.
+/// --target-error, --time-budget, --budget-clock, --snapshots, --checkpoint, --every, --resume: options that
+/// make a render one of several passes.
 class PassOptions {
  public:
   static constexpr double kMostError = 1000;
 
   void add_to(CLI::App& command);
-  bool any() const { return has_target() || !budget_.empty() || !snapshots_.empty(); }
+  bool any() const { return has_target() || !budget_.empty() || !snapshots_.empty() || has_checkpoint(); }
+  bool has_checkpoint() const { return !checkpoint_.empty(); }
   bool has_target() const { return target_error_ > 0; }
 
   /// @param importance of each pixel
@@ -45,6 +46,13 @@ class PassOptions {
   std::unique_ptr<SamplePlan> plan(const std::vector<double>& importance, int samples) const;
   /// Throws InputError for what is no time, and for a clock that the machine does not have.
   std::optional<TimeBudget> budget(bool native) const;
+
+  /// Throws InputError for options that do not go together, and for a file that cannot be written or whose
+  /// checkpoint would be lost.
+  void require_checkpoint() const;
+  /// @param identity what determines the result and is in no RenderRequest
+  std::optional<CheckpointOptions> checkpoint(const std::string& identity) const;
+  OutputOption checkpoint_output() const { return {"--checkpoint", checkpoint_}; }
 
   /// Makes the folder of the snapshots. Throws InputError if it cannot be written to.
   void prepare_snapshots() const;
@@ -58,6 +66,9 @@ class PassOptions {
   std::string budget_;
   std::optional<BudgetClock> clock_;
   std::string snapshots_;
+  std::string checkpoint_;
+  std::string every_;
+  bool resumes_ = false;
 };
 
 /// What passes came to, as a table for people.

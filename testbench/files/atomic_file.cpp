@@ -154,6 +154,39 @@ void write_bytes_atomically(const fs::path& path, std::string_view bytes) {
   write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, bytes, path); });
 }
 
+namespace {
+
+/// Throws RunError unless what was written to a file or folder is on the disk.
+void synchronise(const fs::path& path, const fs::path& target) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool is_synchronised = descriptor >= 0 && fsync(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) close(descriptor);
+  if (!is_synchronised) throw RunError(target.string() + ": cannot be written: " + system_message(error));
+}
+
+/// The old file gets a second name before the new one takes its first, so that it has a name at any moment. A
+/// file system without hard links keeps no old file.
+void keep_previous(const fs::path& path, const fs::path& previous) {
+  std::error_code ignored;
+  const fs::path second = previous.string() + ".new";
+  fs::remove(second, ignored);
+  std::error_code error;
+  fs::create_hard_link(path, second, error);
+  if (!error) fs::rename(second, previous, ignored);
+}
+
+}  // namespace
+
+void replace_durably(const fs::path& path, std::string_view bytes) {
+  TemporaryFile temporary(path);
+  write_bytes(temporary.path(), bytes, path);
+  synchronise(temporary.path(), path);
+  keep_previous(path, path.string() + ".previous");
+  temporary.rename_to(path);
+  synchronise(path.has_parent_path() ? path.parent_path() : fs::path("."), path);
+}
+
 void write_together(const std::vector<std::pair<fs::path, std::string>>& files) {
   std::deque<TemporaryFile> temporaries;
   for (const auto& [path, bytes] : files) write_bytes(temporaries.emplace_back(path).path(), bytes, path);

@@ -43,6 +43,10 @@ void write_atomically(const std::filesystem::path& path,
 /// write_atomically() for content that is already in memory. Throws RunError on a short write (disk full).
 void write_bytes_atomically(const std::filesystem::path& path, std::string_view bytes);
 
+/// write_bytes_atomically() for a file that must survive a loss of power: the bytes are on the disk before
+/// they get the file's name. What the file held before stays as PATH.previous.
+void replace_durably(const std::filesystem::path& path, std::string_view bytes);
+
 /// Writes several files that make sense only together: all are whole before the first gets its name, so a
 /// full disk leaves none of them. Throws as write_bytes_atomically() does.
 void write_together(const std::vector<std::pair<std::filesystem::path, std::string>>& files);

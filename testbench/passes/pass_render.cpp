@@ -79,6 +79,51 @@ class PassLimit {
   SimulatorTimer timer_;
 };
 
+/// Keeps the sums in a file from time to time.
+class Checkpoints {
+ public:
+  /// @param digest of the render; "" without a file
+  Checkpoints(const CheckpointOptions& options, std::string digest)
+      : options_(options), digest_(std::move(digest)) {}
+
+  bool any() const { return !digest_.empty(); }
+  bool resumes() const { return any() && options_.resumes; }
+  PassSums read(const Scene& scene, FilmSums sums) const {
+    return read_checkpoint(options_.file, scene, sums, digest_);
+  }
+  void after_pass(const PassSums& sums) {
+    if (any() && timer_.wall_seconds() >= options_.every_seconds) write(sums);
+  }
+  /// Writes what the file does not have yet.
+  void finish(const PassSums& sums) {
+    if (any() && sums.passes > written_passes_) write(sums);
+  }
+  void are_written(int passes) { written_passes_ = passes; }
+
+ private:
+  void write(const PassSums& sums) {
+    write_checkpoint(options_.file, sums, digest_);
+    written_passes_ = sums.passes;
+    timer_ = {};
+  }
+
+  CheckpointOptions options_;
+  std::string digest_;
+  int written_passes_ = 0;
+  SimulatorTimer timer_;
+};
+
+Checkpoints checkpoints_of(const std::optional<CheckpointOptions>& options, const Scene& scene,
+                           const RenderRequest& request, int ranks) {
+  if (!options) return {{}, ""};
+  return {*options, checkpoint_digest(scene, request, options->identity, ranks)};
+}
+
+/// Tells the other ranks what to do; nothing ends them.
+void send(Ranks& ranks, const PassWork& work) {
+  for (int rank = 1; rank < ranks.size(); ++rank) ranks.send(rank, to_message(work));
+}
+
 /// The first rank's side: decides the passes and collects what they make.
 class PassLeader {
  public:
@@ -89,8 +134,14 @@ class PassLeader {
         request_(request),
         limit_(request.options, budget),
         actions_(actions),
+        checkpoints_(checkpoints_of(actions.checkpoint, scene, request, ranks.size())),
         render_(Film(scene.film, film_scale(scene), request.options.film_sums)),
-        done_(std::size_t(render_.film.pixel_count()), 0.0) {}
+        done_(std::size_t(render_.film.pixel_count()), 0.0) {
+    if (!checkpoints_.resumes()) return;
+    static_cast<PassSums&>(render_) = checkpoints_.read(scene, request.options.film_sums);
+    checkpoints_.are_written(render_.passes);
+    passes_left_out_ = render_.passes;
+  }
 
   PassRender run(SamplePlan& plan) {
     while (const std::optional<MeanSamples> wanted = plan.next(done_, render_.film)) {
@@ -106,36 +157,40 @@ class PassLeader {
             share == 1 ? (*wanted)[pixel] : until[pixel] + share * ((*wanted)[pixel] - until[pixel]);
       const PassWork work = work_between(done_, until, request_.options.program);
       done_ = until;
-      if (!work.empty()) run_pass(work);
+      if (work.empty()) continue;
+      if (passes_left_out_ > 0) {
+        --passes_left_out_;
+      } else if (!run_pass(work)) {
+        render_.end = PassEnd::interrupted;
+        break;
+      }
     }
+    checkpoints_.finish(render_);
     render_.wall_seconds = limit_.wall_seconds();
     write_sums(plan.error());
     return std::move(render_);
   }
 
-  /// Tells the other ranks what to do; nothing ends them.
-  void send(const PassWork& work) {
-    for (int rank = 1; rank < ranks_.size(); ++rank) ranks_.send(rank, to_message(work));
-  }
-
  private:
-  void run_pass(const PassWork& work) {
-    send(work);
+  /// Returns false when the render is to stop. A pass that was interrupted counts for nothing.
+  bool run_pass(const PassWork& work) {
+    send(ranks_, work);
     take_work(work, request_.options);
     const SimulatorTimer timer;
     std::optional<RankRender> pass = render_on_ranks(ranks_, scene_, request_, actions_.progress);
+    if (pass->is_partial) return false;
     render_.film.merge(pass->film);
     ++render_.passes;
     render_.segments += pass->segments;
     render_.cpu_seconds += pass->cpu_seconds;
     if (pass->simulated_seconds)
       render_.simulated_seconds = render_.simulated_seconds.value_or(0) + *pass->simulated_seconds;
-    passes_.push_back(ranks_.alone() ? pass->statistics["parts"][0] : std::move(pass->statistics));
+    render_.parts.push_back(ranks_.alone() ? pass->statistics["parts"][0] : std::move(pass->statistics));
     actions_.after_pass(render_.film, render_.passes);
+    checkpoints_.after_pass(render_);
     limit_.add(double(work.paths(render_.film.pixel_count())), pass->simulated_seconds.value_or(0),
                timer.wall_seconds());
-    if (actions_.progress && !actions_.progress(limit_.spent_share()))
-      throw RunError("interrupted; nothing was written");
+    return !actions_.progress || actions_.progress(limit_.spent_share());
   }
 
   void write_sums(const std::optional<double>& error) {
@@ -150,7 +205,8 @@ class PassLeader {
         {"segments", render_.segments},
         {"samples_a_pixel", {{"fewest", samples.fewest}, {"mean", samples.mean}, {"most", samples.most}}},
         {"image_sha256", render_.film.sha256()},
-        {"parts", std::move(passes_)}};
+        {"parts", std::move(render_.parts)}};
+    if (render_.end == PassEnd::interrupted) render_.statistics["partial"] = true;
   }
 
   Ranks& ranks_;
@@ -158,9 +214,10 @@ class PassLeader {
   RenderRequest request_;
   PassLimit limit_;
   const PassActions& actions_;
+  Checkpoints checkpoints_;
   PassRender render_;
   MeanSamples done_;
-  Json passes_ = Json::array();
+  int passes_left_out_ = 0;  ///< of those that the checkpoint has
 };
 
 /// SystemC elaborates once a process, so a chip lives in a process of its own.
@@ -194,13 +251,12 @@ std::optional<PassRender> render_in_passes(Ranks& ranks, const Scene& scene, Ren
     return std::nullopt;
   }
   prepare(scene, request);
-  PassLeader leader(ranks, scene, request, budget, actions);
   try {
-    PassRender render = leader.run(plan);
-    leader.send({});
+    PassRender render = PassLeader(ranks, scene, request, budget, actions).run(plan);
+    send(ranks, {});
     return render;
   } catch (...) {
-    leader.send({});
+    send(ranks, {});
     throw;
   }
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "testbench/passes/checkpoint.hpp"
 #include "testbench/sampling/sample_plan.hpp"
 #include "testbench/statistics/render_report.hpp"
 #include "testbench/system/ranks.hpp"
@@ -22,20 +23,15 @@ struct TimeBudget {
 };
 
 /// Why no further pass was made.
-enum class PassEnd : std::uint8_t { plan_complete, time_over };
+enum class PassEnd : std::uint8_t { plan_complete, time_over, interrupted };
 
 /// A picture made in passes.
-struct PassRender {
-  explicit PassRender(Film empty) : film(std::move(empty)) {}
+struct PassRender : PassSums {
+  explicit PassRender(Film empty) : PassSums{std::move(empty)} {}
 
-  Film film;
-  int passes = 0;
   PassEnd end = PassEnd::plan_complete;
-  std::uint64_t segments = 0;
-  double cpu_seconds = 0;                   ///< of all ranks
-  double wall_seconds = 0;                  ///< with what is between the passes
-  std::optional<double> simulated_seconds;  ///< of each pass that of the chip that took longest
-  nlohmann::ordered_json statistics;        ///< format csx600-pass-statistics-1: sums, and each pass's own
+  double wall_seconds = 0;            ///< with what is between the passes; of this process
+  nlohmann::ordered_json statistics;  ///< format csx600-pass-statistics-1: sums, and each pass's own
 };
 
 /// What is done besides rendering.
@@ -43,10 +39,13 @@ struct PassActions {
   /// The film after a pass, numbered from 1.
   std::function<void(const Film& film, int pass)> after_pass = [](const Film&, int) {};
   RenderProgress progress;
+  /// Of a plan that no clock or picture moves.
+  std::optional<CheckpointOptions> checkpoint = {};
 };
 
 /// Renders in the passes that `plan` says; with a budget, none begins that is predicted to end too late.
-/// The image depends on the plan, and with a budget on the clock; not on ranks, n or the machine.
+/// The image depends on the plan, and with a budget on the clock; not on ranks, n or the machine. A render
+/// that is interrupted ends behind its last whole pass.
 ///
 /// All ranks call it with the same arguments; the first returns the render, the others none. Throws what
 /// render_on_chip() does, on the first rank also for the others.

@@ -53,18 +53,19 @@ struct RenderResult {
   std::vector<ChipStatistics> chips = {};  ///< of each chip of a board; empty if there is one
   std::string observation_failures;        ///< files that could not be completed, in one line
   model::FaultCounts faults = {};
-  double cpu_seconds = 0;  ///< of the run itself, without loading and writing
+  bool is_partial = false;  ///< interrupted: all of its paths are whole, but some are missing
+  double cpu_seconds = 0;   ///< of the run itself, without loading and writing
   double wall_seconds = 0;
 };
 
-/// Takes the share of camera paths issued; returns false to interrupt the run.
+/// Takes the share of camera paths issued; returns false to interrupt the run: no further path begins.
 using RenderProgress = std::function<bool(double share)>;
 
 /// The firmware on the SystemC model: on each array of each chip of the board (board.chips, chip.arrays). The
 /// samples of every pixel are divided among the arrays, and the film is that of one array, to the bit. Chips
 /// have a DDR and a copy of the scene each, the arrays of a chip share both; all chips are behind one host
 /// link. At most one render a process, as SystemC elaborates once.
-/// Throws InputError for what does not fit the chip, RunError for a run that failed or was interrupted.
+/// Throws InputError for what does not fit the chip, RunError for a run that failed.
 RenderResult render_on_chip(const Scene& scene, const RenderOptions& options,
                             const RenderProgress& progress = {});
 

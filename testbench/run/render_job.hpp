@@ -90,14 +90,14 @@ class RenderJob {
         path_tracer::make_tracer(machine, kernels, options_.program, image_.layout, work);
     tracer->run(std::ref(relay_));
     result_.counts = tracer->counts();
-    if (checker_ && !relay_.interrupted()) checker_->firmware_ends();
+    if (checker_) checker_->firmware_ends();
   }
 
   RenderResult finish() {
     if (checker_) checker_->throw_if_found();
     result_.cpu_seconds = timer_.cpu_seconds();
     result_.wall_seconds = timer_.wall_seconds();
-    if (relay_.interrupted()) throw RunError("interrupted; nothing was written");
+    result_.is_partial = relay_.interrupted();
     require_no_rejected_samples(result_.film);
     return std::move(result_);
   }

@@ -148,6 +148,7 @@ class Board {
       const RenderResult other = arrays_[i]->finish();
       result.film.merge(other.film);
       result.counts.merge(other.counts);
+      result.is_partial = result.is_partial || other.is_partial;
       if (!other.observation_failures.empty())
         result.observation_failures +=
             (result.observation_failures.empty() ? "" : "; ") + other.observation_failures;

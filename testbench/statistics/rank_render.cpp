@@ -25,20 +25,28 @@ std::string render_part(const Scene& scene, const RenderRequest& request, const 
   }
 }
 
-std::string render_share(const Scene& scene, const RenderRequest& request, const RenderProgress& progress) {
+std::string render_share(Ranks& ranks, const Scene& scene, const RenderRequest& request,
+                         const RenderProgress& progress) {
   if (request.options.work.samples == 0) return json_text(Json::object()) + "\n";
   if (!request.in_own_process) return render_part(scene, request, progress);
-  return run_in_processes({[&] { return render_part(scene, request, progress); }}, 1).front();
+  const auto stop = [&ranks] { return ranks.stop_requested(); };
+  try {
+    return run_in_processes({[&] { return render_part(scene, request, progress); }}, 1, {}, 0, stop).front();
+  } catch (const Interrupted&) {
+    return json_text({{"interrupted", true}}) + "\n";
+  }
 }
 
 void add_part(const Scene& scene, FilmSums sums, const std::string& message, RankRender& render,
               Json& parts) {
   const std::size_t end = message.find('\n');
   Json json = Json::parse(message.substr(0, end));
+  render.is_partial = render.is_partial || json.contains("interrupted");
   if (!json.contains("statistics")) return;
   Json& statistics = json["statistics"];
   render.film.merge(Film::from_bytes(scene.film, film_scale(scene), sums, message.substr(end + 1)));
   render.segments += statistics["segments"].get<std::uint64_t>();
+  render.is_partial = render.is_partial || statistics.contains("partial");
   render.cpu_seconds += statistics[kSimulatorSection]["cpu_seconds"].get<double>();
   if (statistics["simulated_seconds"].is_number())
     render.simulated_seconds =
@@ -82,7 +90,7 @@ std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, cons
                                           const RenderProgress& progress) {
   RenderRequest share = request;
   take_share(share.options, ranks.rank(), ranks.size());
-  const std::string own = render_share(scene, share, progress);
+  const std::string own = render_share(ranks, scene, share, progress);
   if (!ranks.is_first()) {
     ranks.send(0, own);
     return std::nullopt;
@@ -95,7 +103,7 @@ std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, cons
   }
   throw_error(messages);
   const FilmSums sums = request.options.film_sums;
-  RankRender render{Film(scene.film, film_scale(scene), sums), 0, 0, std::nullopt, {}};
+  RankRender render{Film(scene.film, film_scale(scene), sums), 0, 0, std::nullopt, false, {}};
   Json parts = Json::array();
   for (const std::string& message : messages) add_part(scene, sums, message, render, parts);
   render.statistics = {
@@ -106,6 +114,7 @@ std::optional<RankRender> render_on_ranks(Ranks& ranks, const Scene& scene, cons
       {"segments", render.segments},
       {"image_sha256", render.film.sha256()},
       {"parts", std::move(parts)}};
+  if (render.is_partial) render.statistics["partial"] = true;
   return render;
 }
 

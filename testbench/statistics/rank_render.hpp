@@ -14,6 +14,7 @@ struct RankRender {
   std::uint64_t segments = 0;
   double cpu_seconds = 0;                   ///< of all ranks
   std::optional<double> simulated_seconds;  ///< of the chip that took longest
+  bool is_partial = false;                  ///< some rank was interrupted
   nlohmann::ordered_json statistics;  ///< format csx600-rank-statistics-2: sums, and each rank's own file
 };
 

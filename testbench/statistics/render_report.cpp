@@ -180,6 +180,7 @@ Json render_statistics(const RenderRequest& request, const RenderResult& result)
   if (request.triangles > 0) json["triangles"] = request.triangles;
   json["firmware"] = firmware_json(request.options);
   if (!request.traversal_reason.empty()) json["traversal_chosen_because"] = request.traversal_reason;
+  if (result.is_partial) json["partial"] = true;
   json["machine"] = request.native ? "native" : "chip";
   json["timing"] = request.native ? "none" : timing_name(request.options.timing);
   if (!request.importance.empty()) json["importance"] = request.importance;

@@ -66,11 +66,25 @@ std::string read_all(int pipe) {
 
 using Children = std::map<pid_t, Child>;
 
+/// Kills the children, whose results nobody will read, and throws Interrupted.
+[[noreturn]] void stop_all(const Children& running) {
+  for (const auto& [child, info] : running) {
+    kill(child, SIGKILL);
+    close(info.pipe);
+    waitpid(child, nullptr, 0);
+  }
+  throw Interrupted();
+}
+
 /// Waits until a child writes its result or ends.
-Children::const_iterator first_with_result(const Children& running) {
+Children::const_iterator first_with_result(const Children& running, const std::function<bool()>& stop) {
+  constexpr int kPollMilliseconds = 100;
   std::vector<pollfd> pipes;
   for (const auto& [child, info] : running) pipes.push_back({info.pipe, POLLIN, 0});
-  while (poll(pipes.data(), pipes.size(), -1) < 0 && errno == EINTR) {
+  while (true) {
+    const int ready = poll(pipes.data(), pipes.size(), stop ? kPollMilliseconds : -1);
+    if (ready > 0 || (ready < 0 && errno != EINTR)) break;
+    if (stop && stop()) stop_all(running);
   }
   auto found = running.begin();
   for (const pollfd& pipe : pipes) {
@@ -104,8 +118,8 @@ void end_with(pid_t parent) {
 }
 
 std::vector<std::string> run_in_processes(const std::vector<std::function<std::string()>>& jobs, int at_once,
-                                          const std::function<void(int finished)>& done,
-                                          double limit_seconds) {
+                                          const std::function<void(int finished)>& done, double limit_seconds,
+                                          const std::function<bool()>& stop) {
   std::vector<std::string> results(jobs.size());
   Children running;
   std::size_t next = 0;
@@ -118,7 +132,7 @@ std::vector<std::string> run_in_processes(const std::vector<std::function<std::s
       running[child] = {next++, pipe};
     }
     // A result may be longer than a pipe's buffer, so it is read before the child can end, and reaped then.
-    const auto [child, info] = *first_with_result(running);
+    const auto [child, info] = *first_with_result(running, stop);
     std::string text = read_all(info.pipe);
     close(info.pipe);
     int status = 0;

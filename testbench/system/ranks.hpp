@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +35,9 @@ class Ranks {
   Message receive();
   /// Returns std::nullopt if no message has arrived.
   std::optional<Message> try_receive();
+  /// Whether any rank was interrupted (InterruptGuard). The rank that was tells the others. In a process that
+  /// a rank has started: whether that process was.
+  bool stop_requested();
   /// Ends the processes of all ranks.
   [[noreturn]] void abort(int exit_code);
 
@@ -42,6 +47,8 @@ class Ranks {
  private:
   int rank_ = 0;
   int size_ = 1;
+  pid_t process_ = 0;         ///< of the rank; one that it has started may not call MPI
+  bool is_stopping_ = false;  ///< all ranks know
 };
 
 /// The number of processes that the launcher reports (Open MPI, PMI); 1 without a launcher.

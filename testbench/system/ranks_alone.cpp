@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "testbench/system/error.hpp"
+#include "testbench/system/interrupt.hpp"
 #include "testbench/system/ranks.hpp"
 
 namespace testbench {
@@ -23,6 +24,11 @@ Ranks::Message Ranks::receive() {
 
 std::optional<Ranks::Message> Ranks::try_receive() {
   return std::nullopt;
+}
+
+bool Ranks::stop_requested() {
+  is_stopping_ = is_stopping_ || interrupt_requested();
+  return is_stopping_;
 }
 
 void Ranks::abort(int exit_code) {

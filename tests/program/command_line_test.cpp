@@ -236,19 +236,28 @@ void wait_until_interrupts_are_caught(pid_t child) {
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
-TEST_F(CommandLine, InterruptEndsARunCleanly) {
-  for (const std::vector<std::string>& how : {Files{}, Files{"--native"}, Files{"--waves", "a.vcd"}}) {
-    Files arguments = {"render", kCornellBox, "--samples", "1000000", "--exr",
-                       "a.exr",  "--png",     "a.png",     "--stats", "a.json"};
+TEST_F(CommandLine, AnInterruptLeavesWhatIsDoneMarkedPartial) {
+  for (const std::vector<std::string>& how :
+       {Files{}, Files{"--native"}, Files{"--paths", "bidirectional"}}) {
+    Files arguments = {"render",  kCornellBox, "--size", "32x32",   "--samples",
+                       "1000000", "--exr",     "a.exr",  "--stats", "a.json"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     const pid_t child = start(arguments);
     wait_until_interrupts_are_caught(child);
-    ASSERT_EQ(kill(child, SIGINT), 0);
+    ASSERT_EQ(kill(child, SIGTERM), 0);
     const CommandResult result = finish(child);
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_EQ(result.error, "csx600: interrupted; nothing was written\n");
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(files(), Files{});
+    EXPECT_EQ(result.error.rfind("csx600: interrupted after ", 0), 0u) << result.error;
+    EXPECT_NE(result.error.find(" of 1024000000 paths; what was written is marked partial\n"),
+              std::string::npos);
+    EXPECT_EQ(files(), (Files{"a.exr", "a.json"}));
+    EXPECT_NE(read("a.exr").find("csx600.partial"), std::string::npos);
+    const json statistics = json::parse(read("a.json"));
+    EXPECT_EQ(statistics["partial"], true);
+    const auto paths = statistics["counts"]["paths"].get<double>();
+    EXPECT_GT(paths, 0);
+    EXPECT_EQ(statistics["samples_a_pixel"]["mean"].get<double>() * 1024, paths)
+        << "each path that began is whole";
   }
 }
 

@@ -156,9 +156,14 @@ TEST_F(PassRenders, StopWhenTheyAreInterrupted) {
   testbench::PassActions actions;
   actions.after_pass = [&](const testbench::Film&, int) { ++passes; };
   actions.progress = [&](double) { return passes < 2; };
-  EXPECT_THROW(testbench::render_in_passes(ranks, scene, request_of(Program::full, true), plan, {}, actions),
-               testbench::RunError);
-  EXPECT_EQ(passes, 2);
+  const PassRender found =
+      *testbench::render_in_passes(ranks, scene, request_of(Program::full, true), plan, {}, actions);
+  EXPECT_EQ(found.end, PassEnd::interrupted);
+  EXPECT_EQ(found.passes, 2);
+  EXPECT_EQ(found.statistics["partial"], true);
+  EXPECT_EQ(found.film.sha256(),
+            testbench::render_natively(scene, render_options(Program::full, 2)).film.sha256())
+      << "whole passes only";
 }
 
 }  // namespace pass_render_test

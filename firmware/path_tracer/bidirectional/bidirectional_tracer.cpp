@@ -28,7 +28,7 @@ void BidirectionalTracer::run(const Progress& progress) {
   while (true) {
     steps_.load_ahead();
     if (steps_.next() == nullptr) break;
-    if (progress && !progress(vertex_stage_.pairs().issued())) return;
+    if (progress && !progress(vertex_stage_.pairs().issued())) vertex_stage_.stop_pairs();
     run_next_step();
   }
   announce_results();

@@ -37,6 +37,7 @@ class VertexStage : public Stage {
   }
 
   const CameraRays& pairs() const { return camera_rays_; }
+  void stop_pairs() { camera_rays_.stop(); }
 
  private:
   struct Loads {

@@ -16,7 +16,8 @@ class Tracer {
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  /// Called between steps with the camera paths issued so far; returns false to stop early.
+  /// Called between steps with the camera paths issued so far; returns false to let no further path
+  /// begin: the run ends when those under way have.
   using Progress = std::function<bool(std::uint64_t paths_issued)>;
 
   virtual void run(const Progress& progress) = 0;

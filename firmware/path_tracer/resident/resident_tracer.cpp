@@ -79,7 +79,7 @@ void ResidentTracer::run(const Progress& progress) {
   start_paths();
   ended_ = {};  // no path was in those places
   while (is_anything_left()) {
-    if (progress && !progress(camera_rays_.issued())) return;
+    if (progress && !progress(camera_rays_.issued())) camera_rays_.stop();
     machine_.issue_mono(kRoundInstructions);
     search();
     shade();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "firmware/path_tracer/program/work.hpp"
@@ -16,10 +17,12 @@ class CameraRays {
   std::int32_t next_sample() const {
     return first_sample_ + static_cast<std::int32_t>(next_ / std::uint64_t(pixels_));
   }
-  std::uint64_t remaining() const { return total_ - next_; }
+  std::uint64_t remaining() const { return next_ < total_ ? total_ - next_ : 0; }
   int pixels() const { return pixels_; }
   void issue(std::uint64_t count) { next_ += count; }
   std::uint64_t issued() const { return next_; }
+  /// No further path begins, but for those that a pass under way has promised its slots (stream execution).
+  void stop() { total_ = std::min(total_, next_); }
 
  private:
   std::uint64_t next_ = 0;

@@ -39,6 +39,7 @@ class PathStage : public Stage {
   void clear_finished() { finished_count_ = 0; }
 
   const CameraRays& camera_rays() const { return camera_rays_; }
+  void stop_camera_rays() { camera_rays_.stop(); }
 
  protected:
   struct Loads {

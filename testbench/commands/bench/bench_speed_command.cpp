@@ -114,6 +114,7 @@ std::string run_variant(const Scene& scene, const Variant& variant) {
   }
   const RenderResult result =
       variant.native ? render_natively(sized, options, progress) : render_on_chip(sized, options, progress);
+  if (result.is_partial) throw RunError("interrupted; nothing was written");
   require_observed(result);
   return Json{{"cpu_seconds", result.cpu_seconds},
               {"segments", result.counts.segments},

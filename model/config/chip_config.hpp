@@ -117,6 +117,12 @@ struct ChipConfig {
     int latency_cycles;  ///< before the bytes of each of the host's DMAs
   } host;
 
+  /// The process in which the chip is made. Only energy and area depend on it: clocks are set apart.
+  struct Technology {
+    int node_nm;
+    double voltage_v;  ///< of the chip's core
+  } technology;
+
   /// Energy to first order: after a run, counters are multiplied by these. No cycle depends on them.
   struct Energy {
     double chip_scale;  ///< factor for all on-chip picojoules below
@@ -133,23 +139,24 @@ struct ChipConfig {
     double search_picojoules_per_byte;        ///< read from or written to a search unit's buffer
     double search_clock_picojoules;           ///< a search unit and cycle, busy or not
     double search_leakage_watts;              ///< of each search unit, with its cache
-    double leakage_watts_per_pe;
-    double leakage_watts;            ///< everything but the PEs
-    double ddr_activate_picojoules;  ///< a page miss
-    double ddr_read_picojoules;      ///< a byte
-    double ddr_write_picojoules;     ///< a byte
-    double ddr_refresh_picojoules;   ///< a refresh
+    double leakage_watts_per_pe;              ///< of a PE with an SRAM of the CSX600's size
+    double leakage_watts;                     ///< everything but the PEs
+    double sram_leakage_watts_per_kib;        ///< of SRAM beyond that of the CSX600
+    double ddr_activate_picojoules;           ///< a page miss
+    double ddr_read_picojoules;               ///< a byte
+    double ddr_write_picojoules;              ///< a byte
+    double ddr_refresh_picojoules;            ///< a refresh
     double ddr_background_watts;
   } energy;
 
   /// Area to first order. Nothing else depends on it.
   struct Area {
-    double pe_mm2;            ///< a PE with its SRAM and its part of the array's wires
+    double pe_mm2;            ///< a PE with an SRAM of the CSX600's size and its part of the array's wires
     double rest_mm2;          ///< everything but PEs and search units
     double search_box_mm2;    ///< what tests a box at a time
     double search_leaf_mm2;   ///< what begins a test of a triangle each cycle
     double search_query_mm2;  ///< state of a query in flight
-    double sram_mm2_per_kib;  ///< of caches and buffers of search units
+    double sram_mm2_per_kib;  ///< of the SRAMs of PEs, of on_chip_sram, caches and buffers of search units
   } area;
 };
 

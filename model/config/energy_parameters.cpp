@@ -74,7 +74,9 @@ void declare_other_instructions(std::vector<ParameterInfo>& table) {
   instruction<InstructionClass::move>(table, 12, "register file twice, 4 bytes each [Horowitz]");
   instruction<InstructionClass::convert>(table, 7.8, "taken as fp64_add [Horowitz]");
   instruction<InstructionClass::enable>(table, 1, "one bit of state, set in each PE", assumed);
-  instruction<InstructionClass::sram>(table, 5, "half of a 64-bit word of an 8 KB cache [Horowitz]");
+  instruction<InstructionClass::sram>(table, 5,
+                                      "half of a 64-bit word of an 8 KB cache [Horowitz]; of 6 "
+                                      "KiB, other sizes by the square root [CACTI]");
   instruction<InstructionClass::sram_vector_load>(table, 5, "as sram [Horowitz]");
   instruction<InstructionClass::swazzle>(table, 13, "two register files and a short wire", assumed);
   instruction<InstructionClass::swazzle_vector4>(table, 52, "4 x swazzle", assumed);
@@ -97,8 +99,9 @@ void declare_rest_of_chip(std::vector<ParameterInfo>& table) {
                                              assumed, "a byte from node to node of the on-chip network");
   declare<&Energy::on_chip_sram_picojoules_per_byte>(
       table, "energy.on_chip_sram_picojoules_per_byte", "pJ/byte", 4.75, Confidence::inferred,
-      "read from or written to the on-chip SRAM: 38 pJ for 8 bytes, between 20 of a 32 KB and 100 of a 1 MB "
-      "cache [Horowitz]; its leakage is in energy.leakage_watts");
+      "read from or written to an on-chip SRAM of 128 KiB, other sizes by the square root: 38 pJ for 8 "
+      "bytes, "
+      "between 20 of a 32 KB and 100 of a 1 MB cache [Horowitz]");
   declare<&Energy::search_box_picojoules>(
       table, "energy.search_box_picojoules", "pJ", 28, Confidence::inferred,
       "a box by a search unit: 6 fp32 additions and multiplications without register file [Horowitz]; "
@@ -120,9 +123,27 @@ void declare_rest_of_chip(std::vector<ParameterInfo>& table) {
                                          "of a search unit, as ten PEs");
   declare<&Energy::leakage_watts_per_pe>(
       table, "energy.leakage_watts_per_pe", "W/PE", 0.008, assumed,
-      "of a PE; with the rest of the chip 1 W, a tenth of its power, as leakage was at 0.13 um");
-  declare<&Energy::leakage_watts>(table, "energy.leakage_watts", "W", 0.232, assumed,
-                                  "of the chip without its PEs, see energy.leakage_watts_per_pe");
+      "of a PE with 6 KiB; with the rest of the chip 1 W, a tenth of its power, as leakage was at 0.13 um");
+  declare<&Energy::leakage_watts>(
+      table, "energy.leakage_watts", "W", 0.232, assumed,
+      "of the chip without its PEs, with 128 KiB of on_chip_sram, see energy.leakage_watts_per_pe");
+  declare<&Energy::sram_leakage_watts_per_kib>(
+      table, "energy.sram_leakage_watts_per_kib", "W/KiB", 0.00027, Confidence::inferred,
+      "of SRAM beyond 6 KiB a PE and 128 KiB of on_chip_sram, which the other leakages cover: 1.62 mW for 6 "
+      "KiB, 8.2 for 32, 30 for 128 [CACTI]; high-performance cells, low-power ones leak a hundredth");
+}
+
+void declare_technology(std::vector<ParameterInfo>& table) {
+  constexpr auto group = &ChipConfig::technology;
+  using Technology = ChipConfig::Technology;
+  table.push_back(integer<group, &Technology::node_nm>(
+      "technology.node_nm", "nm", 130, {7, 130}, Confidence::inferred,
+      "process: that of the predecessor CS301 [S10], the CSX600's is not public; energy and area on the chip "
+      "follow it, the clock does not [Stillmaker]"));
+  // The polynomial of 65 nm is the last to stop falling, at 0.586 V.
+  table.push_back(real<group, &Technology::voltage_v>(
+      "technology.voltage_v", "V", 1.2, {0.6, 1.4}, Confidence::assumed,
+      "supply of the chip's core: usual at 130 nm; at other nodes set it, too"));
 }
 
 void declare_ddr(std::vector<ParameterInfo>& table) {
@@ -146,6 +167,7 @@ void declare_ddr(std::vector<ParameterInfo>& table) {
 }  // namespace
 
 void declare_energy(std::vector<ParameterInfo>& table) {
+  declare_technology(table);
   declare<&Energy::chip_scale>(
       table, "energy.chip_scale", "-", 15.93, Confidence::inferred,
       "factor for the on-chip picojoules below, which are of 45 nm and 0.9 V: fitted so that the chip takes "

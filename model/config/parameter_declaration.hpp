@@ -70,7 +70,7 @@ ParameterInfo real(std::string key, std::string unit, double default_value, Real
           confidence,     std::move(meaning), &F::read,      &F::write};
 }
 
-/// Declares the energy parameters (energy_parameters.cpp).
+/// Declares process, voltage and the energy parameters (energy_parameters.cpp).
 void declare_energy(std::vector<ParameterInfo>& table);
 /// Declare the search unit's parameters and areas (search_unit_parameters.cpp).
 void declare_search_unit(std::vector<ParameterInfo>& table);

@@ -404,7 +404,12 @@ const std::vector<ParameterSource>& parameter_sources() {
       {"Aladdin",
        "Y. S. Shao et al., Aladdin, ISCA 2014: functional units of its file power_func.h, 40 nm, 2 ns a "
        "cycle"},
-      {"CACTI", "CACTI 7.0 (HewlettPackard/cacti), SRAM macros, ITRS high performance, 130 nm, run by us"},
+      {"CACTI",
+       "CACTI 7.0 (HewlettPackard/cacti), SRAM macros, ITRS high performance, 22 to 130 nm, run by us"},
+      {"Stillmaker",
+       "A. Stillmaker, B. Baas, Scaling Equations for the Accurate Prediction of CMOS Device Performance "
+       "from "
+       "180 nm to 7 nm, Integration 58, 2017"},
       {"JESD79-2", "JEDEC, DDR2 SDRAM Specification"},
       {"Horowitz",
        "M. Horowitz, Computing's Energy Problem (and what we can do about it), ISSCC 2014: 45 nm, 0.9 V"},

@@ -79,13 +79,13 @@ void declare_area(std::vector<ParameterInfo>& table) {
   constexpr Confidence inferred = Confidence::inferred;
   constexpr RealRange kAnyArea = {0, 1e6};
   using Area = ChipConfig::Area;
-  table.push_back(real<group, &Area::pe_mm2>(
-      "area.pe_mm2", "mm2", 0.8, kAnyArea, inferred,
-      "a PE at 130 nm: fp64 multiplier and adder 0.26 [Aladdin], SRAM of 6 KiB 0.19 [CACTI], the rest "
-      "assumed; 0.6 to 1.0"));
+  table.push_back(real<group, &Area::pe_mm2>("area.pe_mm2", "mm2", 0.8, kAnyArea, inferred,
+                                             "a PE with 6 KiB at 130 nm: fp64 multiplier and adder 0.26 "
+                                             "[Aladdin], SRAM of 6 KiB 0.19 [CACTI], the rest "
+                                             "assumed; 0.6 to 1.0"));
   table.push_back(real<group, &Area::rest_mm2>("area.rest_mm2", "mm2", 80, kAnyArea, assumed,
-                                               "mono processor, caches, on-chip SRAM, network, interfaces "
-                                               "and pads; 50 to 130, no die photo is public"));
+                                               "mono processor, caches, 128 KiB of on-chip SRAM, network, "
+                                               "interfaces and pads; 50 to 130, no die photo is public"));
   table.push_back(real<group, &Area::search_box_mm2>(
       "area.search_box_mm2", "mm2", 0.64, kAnyArea, inferred,
       "tester of a box: 6 x (fp32 add 0.003 + multiply 0.0062) at 40 nm [Aladdin], x 10.6 x 1.1; within a "
@@ -98,10 +98,12 @@ void declare_area(std::vector<ParameterInfo>& table) {
       "area.search_query_mm2", "mm2", 0.02, kAnyArea, inferred,
       "a ray in flight: 200 bytes of ray, hit and stack in SRAM, twice that for ports [CACTI]; within a "
       "factor of 3"));
-  table.push_back(real<group, &Area::sram_mm2_per_kib>(
-      "area.sram_mm2_per_kib", "mm2/KiB", 0.03, kAnyArea, inferred,
-      "caches and buffer: 0.241 for 8 KiB, 0.887 for 32, 3.64 for 128 [CACTI]; macros with test logic are up "
-      "to twice that"));
+  table.push_back(
+      real<group, &Area::sram_mm2_per_kib>("area.sram_mm2_per_kib", "mm2/KiB", 0.03, kAnyArea, inferred,
+                                           "SRAM of PEs beyond 6 KiB, on_chip_sram beyond 128 KiB, search "
+                                           "units' caches and buffer: 0.241 for 8 KiB, 0.887 for "
+                                           "32, 3.64 for 128 [CACTI]; macros with test logic are up "
+                                           "to twice that"));
 }
 
 }  // namespace model

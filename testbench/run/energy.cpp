@@ -1,5 +1,7 @@
 #include "testbench/run/energy.hpp"
 
+#include "testbench/run/technology.hpp"
+
 namespace testbench {
 namespace {
 
@@ -21,28 +23,32 @@ class Causes {
       : run_(statistics),
         table_(statistics.config.energy),
         seconds_(statistics.total_seconds()),
-        scale_(table_.chip_scale * kPico) {}
+        technology_(technology_factors(statistics.config.technology)),
+        scale_(table_.chip_scale * kPico * technology_.energy) {}
 
   std::vector<Energy::Cause> all() {
     add_instructions();
+    const model::ChipConfig& config = run_.config;
+    const double poly_sram = sram_access_factor(config.poly.sram_bytes, kReferencePolySramBytes);
     const double pio_words = double(run_.poly_sram.words_in + run_.poly_sram.words_out) * kPeWordsPerPioWord;
-    chip("poly_sram", executed(InstructionClass::sram) + executed(InstructionClass::sram_vector_load) +
-                          scale_ * pio_words * table_.picojoules[std::size_t(InstructionClass::sram)]);
+    chip("poly_sram",
+         poly_sram * (executed(InstructionClass::sram) + executed(InstructionClass::sram_vector_load) +
+                      scale_ * pio_words * table_.picojoules[std::size_t(InstructionClass::sram)]));
     chip("swazzle", executed(InstructionClass::swazzle) + executed(InstructionClass::swazzle_vector4));
     chip("pe_clock", scale_ * table_.pe_clock_picojoules * pes() * double(run_.total_cycles));
     chip("control_unit", scale_ * table_.control_unit_picojoules * double(busy_cycles()));
     chip("pio",
          scale_ * table_.pio_picojoules_per_byte * double(run_.pio.bytes_to_poly + run_.pio.bytes_to_mono));
     chip("clear_connect",
-         network(run_.config.clear_connect.hops_to_ddr, double(network_bytes()) - sram_bytes()) +
-             network(run_.config.on_chip_sram.hops, sram_bytes()) +
-             network(run_.config.search_unit.hops - run_.config.clear_connect.hops_to_ddr, search_bytes()));
+         network(config.clear_connect.hops_to_ddr, double(network_bytes()) - sram_bytes()) +
+             network(config.on_chip_sram.hops, sram_bytes()) +
+             network(config.search_unit.hops - config.clear_connect.hops_to_ddr, search_bytes()));
     if (run_.on_chip_sram.accesses > 0)
-      chip("on_chip_sram", scale_ * table_.on_chip_sram_picojoules_per_byte * sram_bytes());
+      chip("on_chip_sram",
+           scale_ * table_.on_chip_sram_picojoules_per_byte * sram_bytes() *
+               sram_access_factor(double(config.on_chip_sram.size_bytes), kReferenceOnChipSramBytes));
     if (search_units() > 0) chip("search_unit", search_joules());
-    chip("leakage", (table_.leakage_watts * run_.config.board.chips + table_.leakage_watts_per_pe * pes() +
-                     table_.search_leakage_watts * search_units()) *
-                        seconds_);
+    chip("leakage", leakage_watts() * seconds_);
     add_ddr();
     return std::move(causes_);
   }
@@ -51,6 +57,14 @@ class Causes {
   void chip(const std::string& name, double joules) { causes_.push_back({name, joules, false}); }
   void ddr(const std::string& name, double joules) { causes_.push_back({name, joules, true}); }
 
+  double leakage_watts() const {
+    const model::ChipConfig& config = run_.config;
+    const double sram_kib =
+        added_poly_sram_kib(config) * pes() + added_on_chip_sram_kib(config) * config.board.chips;
+    return technology_.leakage *
+           (table_.leakage_watts * config.board.chips + table_.leakage_watts_per_pe * pes() +
+            table_.search_leakage_watts * search_units() + table_.sram_leakage_watts_per_kib * sram_kib);
+  }
   /// Of all arrays and chips.
   int pes() const { return run_.config.chip.pes * run_.arrays(); }
   /// Energy of enabled PEs. The code quality factor stands for that many more instructions of the same mix.
@@ -105,6 +119,7 @@ class Causes {
   const ChipStatistics& run_;
   const model::ChipConfig::Energy& table_;
   double seconds_;
+  TechnologyFactors technology_;
   double scale_;
   std::vector<Energy::Cause> causes_;
 };

@@ -8,7 +8,8 @@
 namespace testbench {
 
 /// First-order energy of a run, from the first cycle of the upload to the last of the download: counters
-/// times the chip's table (`energy.*` of ChipConfig). Computed after the run from what it counted.
+/// times the chip's table (`energy.*` of ChipConfig), scaled to the size of SRAMs, process and voltage
+/// (technology.hpp). Computed after the run from what it counted.
 struct Energy {
   struct Cause {
     std::string name;

@@ -10,6 +10,7 @@
 #include "firmware/path_tracer/program/program_options.hpp"
 #include "testbench/paper/paper.hpp"
 #include "testbench/run/energy.hpp"
+#include "testbench/run/technology.hpp"
 #include "testbench/run/timing_name.hpp"
 #include "testbench/statistics/chip_config_json.hpp"
 #include "testbench/statistics/counters.hpp"
@@ -47,6 +48,7 @@ using Rows = std::vector<std::pair<std::string, std::string>>;
 void add_energy_row(const RenderResult& result, Rows& rows) {
   const Energy energy = energy_of(*result.chip);
   const std::uint64_t rays = result.counts.segments + result.counts.shadow_rays;
+  for (const std::string& note : technology_notes(result.chip->config)) rows.emplace_back("note", note);
   rows.emplace_back("energy", text("%.4g J", energy.joules()) +
                                   text(result.chips.empty() ? " (%.1f W chip" : " (%.1f W chips",
                                        energy.chip_joules() / energy.seconds) +

@@ -134,7 +134,7 @@ std::size_t keys_of(const std::string& group) {
 TEST(ParameterTable, CoversEveryField) {
   const ChipConfig config = default_chip_config();
   const auto& [preset, chip, poly, control, pio, clear_connect, ddr, on_chip_sram, search_unit, board, host,
-               energy, area] = config;  // a new group breaks this line
+               technology, energy, area] = config;  // a new group breaks this line
   EXPECT_EQ(preset, "csx600");
   EXPECT_EQ(keys_of("chip"), field_count<std::decay_t<decltype(chip)>>());
   EXPECT_EQ(keys_of("poly"), field_count<std::decay_t<decltype(poly)>>() - 1 + cn::kInstructionClasses);
@@ -145,6 +145,7 @@ TEST(ParameterTable, CoversEveryField) {
   EXPECT_EQ(keys_of("ddr"), field_count<std::decay_t<decltype(ddr)>>());
   EXPECT_EQ(keys_of("on_chip_sram"), field_count<std::decay_t<decltype(on_chip_sram)>>());
   EXPECT_EQ(keys_of("search_unit"), field_count<std::decay_t<decltype(search_unit)>>());
+  EXPECT_EQ(keys_of("technology"), field_count<std::decay_t<decltype(technology)>>());
   EXPECT_EQ(keys_of("area"), field_count<std::decay_t<decltype(area)>>());
   EXPECT_EQ(keys_of("board"), field_count<std::decay_t<decltype(board)>>());
   EXPECT_EQ(keys_of("host"), field_count<std::decay_t<decltype(host)>>());

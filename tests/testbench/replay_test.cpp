@@ -91,6 +91,7 @@ model::ParameterValue other_value(const model::ParameterInfo& parameter) {
   if (parameter.key == "ddr.page_bytes") return std::int64_t{2048};
   if (parameter.key == "clear_connect.bytes_per_cycle") return std::int64_t{3};
   if (parameter.key == "clear_connect.packet_bytes") return std::int64_t{128};
+  if (parameter.key == "chip.watchdog_cycles") return std::int64_t{1'000'000'000};  // fewer end the run
   if (parameter.key == "control.cache_line_bytes") return std::int64_t{64};
   if (parameter.key == "control.data_cache_bytes") return std::int64_t{256};
   if (const auto* const range = std::get_if<model::IntegerRange>(&parameter.allowed)) {

@@ -13,8 +13,7 @@ std::string names_of(const std::vector<Level>& levels) {
 
 bool processor_executes(Level level) {
 #if defined(__clang__)
-  // Clang 14 knows features only: those of a level (System V ABI of AMD64, section 3.1.1) that it has names
-  // for.
+  // Clang 14 knows features only: those of a level, as AMD64's psABI lists them, that it has names for.
   const bool v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
   const bool v3 = v2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                   __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/constants.hpp>
 #include <numeric>
 #include <unordered_map>
 

@@ -37,7 +37,7 @@ const Schema& head_schema() {
 /// The file's content without the digest behind it, which is checked.
 std::string checked_content(const std::filesystem::path& file) {
   std::string bytes = read_input_file(file, kAllowed);
-  if (bytes.rfind("{\"format\":\"csx600-checkpoint-", 0) != 0) refuse(file, "no checkpoint");
+  if (bytes.rfind(R"({"format":"csx600-checkpoint-)", 0) != 0) refuse(file, "no checkpoint");
   if (bytes.size() < kDigestDigits) refuse(file, "a checkpoint that was cut off or changed");
   const std::string digest = bytes.substr(bytes.size() - kDigestDigits);
   bytes.resize(bytes.size() - kDigestDigits);

@@ -17,7 +17,8 @@ FixedPlan::FixedPlan(std::vector<double> importance, int samples, double paths_a
 }
 
 MeanSamples FixedPlan::after(std::size_t pass) const {
-  const double before = double(pass / ranges_) * samples_a_pass_;
+  const std::size_t passes_before = pass / ranges_;
+  const double before = double(passes_before) * samples_a_pass_;
   const double behind = std::min(samples_, before + samples_a_pass_);
   const std::size_t end = importance_.size() * (pass % ranges_ + 1) / ranges_;
   MeanSamples means(importance_.size());

@@ -1,5 +1,7 @@
 #include "testbench/run/simulator_choice.hpp"
 
+#include "model/config/chip_parameters.hpp"
+
 namespace testbench {
 namespace {
 
@@ -30,12 +32,13 @@ bool allows_bins_of_hits(const ProgramConfig& program) {
 std::string suit_to_simulator(const GivenOptions& given, RenderOptions& options) {
   search_natively(options);
   ProgramConfig& program = options.program;
-  options.chip.chip.pes = kSimulatorPes;
+  // Who asks for a chip of another width wants its counters.
+  if (options.chip.chip.pes == model::default_chip_config().chip.pes) options.chip.chip.pes = kSimulatorPes;
   if (given.count("bin_blocks") == 0) program.bin_blocks = kBinBlocks;
   if (given.count("n") == 0) program.n = 0;  // transfers are instant
   const bool bins = given.count("shading") == 0 && allows_bins_of_hits(program) && bins_of_hits_pay(program);
   if (bins) program.shading = path_tracer::Shading::material_bins;
-  return std::string("native: through the simulator's own tree, blocks of ") + std::to_string(kSimulatorPes) +
+  return std::string("native: through the simulator's own tree, blocks of ") + std::to_string(options.chip.chip.pes) +
          (bins ? ", hits in bins of their material" : "");
 }
 

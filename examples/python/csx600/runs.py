@@ -59,14 +59,19 @@ class Run:
         return {kernel["name"]: kernel for kernel in sorted(kernels, key=lambda kernel: -kernel["cycles"])}
 
 
-def read_run(path):
-    """Raises ValueError, a line that names the file, if it is not the statistics of a run."""
+def read_json(path, file_format, writer):
+    """The JSON of a file that `writer` wrote in a version of `file_format`. Raises ValueError, a line that names the file."""
     with open(path, encoding="utf-8") as file:
         try:
             contents = json.load(file)
         except json.JSONDecodeError as error:
             raise ValueError(f"{path}: not JSON: {error}") from None
     found = contents.get("format") if isinstance(contents, dict) else None
-    if not str(found).startswith(FORMAT):
-        raise ValueError(f"{path}: found format {found!r}; allowed: {FORMAT}..., which csx600 render --stats writes")
-    return Run(contents)
+    if not str(found).startswith(file_format):
+        raise ValueError(f"{path}: found format {found!r}; allowed: {file_format}..., which {writer} writes")
+    return contents
+
+
+def read_run(path):
+    """Raises ValueError, a line that names the file, if it is not the statistics of a run."""
+    return Run(read_json(path, FORMAT, "csx600 render --stats"))

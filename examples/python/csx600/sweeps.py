@@ -1,8 +1,9 @@
 """A sweep: the directory that `csx600 sweep` fills."""
 
 import csv
-import json
 import os
+
+from csx600.runs import read_json
 
 FORMAT = "csx600-sweep-"
 
@@ -88,13 +89,5 @@ def _read_columns(path):
 
 def read_sweep(directory):
     """Raises ValueError, a line that names the file, if the directory holds no finished or stopped sweep."""
-    path = os.path.join(directory, "sweep.json")
-    with open(path, encoding="utf-8") as file:
-        try:
-            contents = json.load(file)
-        except json.JSONDecodeError as error:
-            raise ValueError(f"{path}: not JSON: {error}") from None
-    found = contents.get("format") if isinstance(contents, dict) else None
-    if not str(found).startswith(FORMAT):
-        raise ValueError(f"{path}: found format {found!r}; allowed: {FORMAT}..., which csx600 sweep writes")
+    contents = read_json(os.path.join(directory, "sweep.json"), FORMAT, "csx600 sweep")
     return Sweep(contents, _read_columns(os.path.join(directory, "columns.csv")))

@@ -38,8 +38,8 @@ std::string suit_to_simulator(const GivenOptions& given, RenderOptions& options)
   if (given.count("n") == 0) program.n = 0;  // transfers are instant
   const bool bins = given.count("shading") == 0 && allows_bins_of_hits(program) && bins_of_hits_pay(program);
   if (bins) program.shading = path_tracer::Shading::material_bins;
-  return std::string("native: through the simulator's own tree, blocks of ") + std::to_string(options.chip.chip.pes) +
-         (bins ? ", hits in bins of their material" : "");
+  return std::string("native: through the simulator's own tree, blocks of ") +
+         std::to_string(options.chip.chip.pes) + (bins ? ", hits in bins of their material" : "");
 }
 
 }  // namespace testbench

@@ -5,6 +5,10 @@
 # errno nor traps of floating-point operations are looked at, and giving them up changes no result.
 set(CSX600_ARITHMETIC_OPTIONS -ffp-contract=off -fwrapv -fno-math-errno -fno-trapping-math)
 
+# What joins objects and renames symbols: GNU's, whatever belongs to the compiler.
+find_program(CSX600_GNU_LD NAMES ld.bfd ld REQUIRED)
+find_program(CSX600_GNU_OBJCOPY NAMES objcopy REQUIRED)
+
 # Structs of vectors are copied in pieces of these sizes. GCC's default of 128 bits writes a register in two halves and
 # reads it back whole, which stalls; with it x86-64-v3 was no faster than v2.
 set(CSX600_NATIVE_BITS_v2 128)
@@ -35,8 +39,8 @@ function(csx600_add_level_object name level)
   set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}.o)
   add_custom_command(
     OUTPUT ${object}
-    COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:${name}_objects>
-    COMMAND ${CMAKE_OBJCOPY} ${of_OBJCOPY} ${object}
+    COMMAND ${CSX600_GNU_LD} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:${name}_objects>
+    COMMAND ${CSX600_GNU_OBJCOPY} ${of_OBJCOPY} ${object}
     DEPENDS ${name}_objects $<TARGET_OBJECTS:${name}_objects>
     COMMAND_EXPAND_LISTS
     VERBATIM)

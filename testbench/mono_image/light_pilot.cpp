@@ -119,7 +119,9 @@ class Pilot {
     for (std::size_t i = 0; i < clusters_.size(); ++i) {
       const LightCluster& cluster = clusters_[i];
       const double chosen = numbers.next() * cluster.power();
-      const glm::dvec2 place(numbers.next(), numbers.next());
+      const double second = numbers.next();  // in an order of its own: that of arguments is the compiler's
+      const double first = numbers.next();
+      const glm::dvec2 place(first, second);
       const auto found = std::upper_bound(cluster.power_cdf.begin(), cluster.power_cdf.end() - 1, chosen);
       const Emitter& emitter = emitters_[cluster.emitters[std::size_t(found - cluster.power_cdf.begin())]];
       const Sighting sighting = sight(emitter, position, normal, place, surroundings_);

@@ -4,5 +4,5 @@ set(report_assets page.html page.css common.js run.js sweep.js echarts/echarts.c
 list(TRANSFORM report_assets PREPEND report/)
 list(TRANSFORM report_assets PREPEND ${PROJECT_SOURCE_DIR}/testbench/ OUTPUT_VARIABLE report_files)
 add_custom_command(OUTPUT report_assets.o
-  COMMAND ${CMAKE_LINKER} -m elf_x86_64 -r -b binary -z noexecstack -o ${CMAKE_CURRENT_BINARY_DIR}/report_assets.o ${report_assets}
+  COMMAND ${CSX600_GNU_LD} -m elf_x86_64 -r -b binary -z noexecstack -o ${CMAKE_CURRENT_BINARY_DIR}/report_assets.o ${report_assets}
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}/testbench DEPENDS ${report_files} VERBATIM)
